@@ -1,0 +1,75 @@
+//! What a scene is: meshes, objects that place them, and their world bounds.
+
+use crate::animation::Motion;
+use crate::camera::Camera;
+use glam::{DAffine3, DVec3, Vec3};
+
+/// How a mesh's indices form primitives. Strips, fans and loops are rewritten to these on import.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Topology {
+    /// Three indices a triangle.
+    #[default]
+    Triangles,
+    /// Two indices a line, one pixel wide.
+    Lines,
+    /// One index a point, one pixel large.
+    Points,
+}
+
+/// Geometry in object space. Indices are always within `positions`, which are always finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Name from the file, or of the generator.
+    pub name: String,
+    /// How `indices` form primitives.
+    pub topology: Topology,
+    /// Object-space positions.
+    pub positions: Vec<Vec3>,
+    /// Unit normals, one a position.
+    pub normals: Vec<Vec3>,
+    /// Indices into `positions`; a multiple of 3, 2 or 1 by `topology`.
+    pub indices: Vec<u32>,
+}
+
+/// One mesh primitive in the world: the unit of culling.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Name used in errors and reports; not unique.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: u32,
+    /// World from object, at time 0.
+    pub world_from_object: DAffine3,
+    /// Linear base colour, alpha last, each in 0..=1.
+    pub colour: [f32; 4],
+    /// Moves during the scene's animation.
+    pub dynamic: bool,
+    /// Blended after the opaque objects (drawn opaque until the translucent pass exists).
+    pub translucent: bool,
+    /// Alpha-tested. Such an object must never write depth under forced early tests, once textures exist.
+    pub masked: bool,
+}
+
+/// An axis-aligned box, `min <= max` in each axis when it holds something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Smallest corner.
+    pub min: DVec3,
+    /// Largest corner.
+    pub max: DVec3,
+}
+
+/// Everything there is to draw, and where to look at it from.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Name on the command line and in results.
+    pub name: String,
+    /// Meshes, shared by objects.
+    pub meshes: Vec<Mesh>,
+    /// Objects, in drawing order.
+    pub objects: Vec<Object>,
+    /// Cameras supplied with the scene, the default one first. May be empty: then one is made from the bounds.
+    pub cameras: Vec<Camera>,
+    /// How dynamic objects move.
+    pub motion: Motion,
+}
