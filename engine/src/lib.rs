@@ -1,1 +1,37 @@
-//! x
+//! Vulkan for Sightline: device, memory, frames with derived barriers, timers.
+//!
+//! The only crate that calls `ash`. A [`Gpu`] owns the device; a [`Frame`] records stages that the `shaders` crate
+//! generated, derives the barriers between them, runs them and reports what each cost. Nothing here knows a culling method.
+
+mod adapter;
+mod barriers;
+mod capture;
+mod error;
+mod frame;
+mod gpu;
+mod image;
+mod instance;
+mod lower;
+mod memory;
+mod messages;
+mod pipeline;
+mod pipeline_cache;
+mod recorder;
+mod timers;
+mod transfer;
+
+pub use adapter::{AdapterInfo, DeviceKind};
+pub use barriers::{Barrier, BarrierTracker, Point, Use};
+pub use capture::Capture;
+pub use error::Error;
+pub use frame::{Frame, FrameReport, Skip, StageTime, Statistics};
+pub use gpu::{Gpu, GpuOptions};
+pub use image::{Format, Image, Target};
+pub use instance::{adapters, device_lines};
+pub use memory::{Buffer, Placement};
+pub use messages::Message;
+pub use recorder::{IndexedIndirect, Op, Primitives, Recorder};
+pub use timers::TimerMode;
+
+/// What the engine's calls return.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,243 @@
+//! One frame: recorded stage by stage, run, timed.
+
+use crate::gpu::{Gpu, Vulkan};
+use crate::image::Target;
+use crate::lower::{self, Lowered};
+use crate::recorder::{IndexedIndirect, Op, Recorder};
+use crate::timers::{Queries, TimerMode};
+use crate::{Buffer, Error, Result};
+use bytemuck::Pod;
+use shaders::{Bound, BufferRef, ComputeStage, GraphicsStage};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// What a stage cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageTime {
+    /// Stage name, with the part of the frame behind a colon.
+    pub label: String,
+    /// Milliseconds on the device.
+    pub ms: f64,
+}
+
+/// A stage that was not recorded, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Skip {
+    /// Stage name, with the part of the frame behind a colon.
+    pub label: String,
+    /// Why it could not change the result.
+    pub reason: &'static str,
+}
+
+/// What the device counted over a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Primitives that entered the pipelines.
+    pub primitives: u64,
+    /// Fragments shaded, which are those that passed the early tests.
+    pub fragments: u64,
+}
+
+/// What a frame did and cost.
+#[derive(Clone, Debug, Default)]
+pub struct FrameReport {
+    /// Stages in order of recording.
+    pub stages: Vec<StageTime>,
+    /// Stages that were not needed.
+    pub skips: Vec<Skip>,
+    /// From the first submission until the device was idle, in milliseconds.
+    pub frame_ms: f64,
+    /// What the host spent on recording, waits excluded, in milliseconds.
+    pub host_ms: f64,
+    /// What the device counted, if it was asked to and can.
+    pub statistics: Option<Statistics>,
+    /// What was drawn, in order.
+    pub draws: Vec<IndexedIndirect>,
+    /// Submissions.
+    pub submissions: u32,
+}
+
+/// A frame being recorded. Dropping it unfinished runs nothing more.
+pub struct Frame {
+    gpu: Gpu,
+    recorder: Recorder,
+    report: FrameReport,
+    queries: Option<Queries>,
+    count_statistics: bool,
+    timer: TimerMode,
+    first_submit: Option<Instant>,
+    host_since: Instant,
+}
+
+impl Frame {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        if let Some(vulkan) = &gpu.0.vulkan {
+            vulkan.bury();
+            vulkan.frames_alive.fetch_add(1, Ordering::AcqRel);
+        }
+        Frame {
+            gpu: gpu.clone(),
+            recorder: Recorder::default(),
+            report: FrameReport::default(),
+            queries: None,
+            count_statistics: false,
+            timer: gpu.timer_mode(),
+            first_submit: None,
+            host_since: Instant::now(),
+        }
+    }
+
+    /// Asks the device to count primitives and fragments, where it can. Not for timed frames.
+    pub fn count_statistics(&mut self) {
+        self.count_statistics = true;
+    }
+
+    pub(crate) fn timer_mode(&mut self, mode: TimerMode) {
+        self.timer = mode;
+    }
+
+    /// Names the part of the frame that the following stages belong to ("early", "late"); "" for none.
+    pub fn part(&mut self, part: &'static str) {
+        self.recorder.part(part);
+    }
+
+    /// Runs a compute stage over at least `invocations` invocations in x.
+    pub fn dispatch<S: ComputeStage>(&mut self, stage: S, invocations: u32) {
+        self.dispatch_groups(stage, invocations.div_ceil(S::INFO.local_size[0].max(1)));
+    }
+
+    /// Runs a compute stage over `groups` work groups.
+    pub fn dispatch_groups<S: ComputeStage>(&mut self, stage: S, groups: u32) {
+        if groups == 0 {
+            self.skip(S::INFO.name, "nothing to do");
+            return;
+        }
+        self.recorder.push(S::INFO.name, Op::Dispatch { stage: stage.bind(), groups });
+    }
+
+    /// Runs a compute stage over the grid in `groups` (three words on the GPU).
+    pub fn dispatch_indirect<S: ComputeStage>(&mut self, stage: S, groups: BufferRef<u32>) {
+        self.recorder.push(S::INFO.name, Op::DispatchIndirect { stage: stage.bind(), groups });
+    }
+
+    /// Draws to the target, with depth test.
+    pub fn draw<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
+        if draw.max_draws == 0 {
+            self.skip(S::INFO.name, "no objects");
+            return;
+        }
+        self.report.draws.push(draw);
+        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+    }
+
+    /// Clears the target: colour to black, items to none, depth to far.
+    pub fn clear(&mut self, target: &Target) {
+        self.recorder.push("target/clear", Op::Clear { target: *target });
+    }
+
+    /// Sets every word of a buffer.
+    pub fn fill<T: Pod>(&mut self, label: &str, buffer: &Buffer<T>, value: u32) {
+        self.recorder.push(label, Op::Fill { buffer: buffer.all().into(), value });
+    }
+
+    /// Copies a buffer to another one at least as long.
+    pub fn copy<T: Pod>(&mut self, label: &str, from: BufferRef<T>, to: BufferRef<T>) {
+        self.recorder.push(label, Op::Copy { from: from.into(), to: to.into() });
+    }
+
+    /// Notes that a stage was not needed.
+    pub fn skip(&mut self, stage: &str, reason: &'static str) {
+        let label = self.recorder.label(stage);
+        self.report.skips.push(Skip { label, reason });
+    }
+
+    /// The frame recorded so far, as text: stages, what they touch, and the barriers between them.
+    pub fn text(&self) -> String {
+        self.recorder.text(|id| self.gpu.resource_name(id))
+    }
+
+    /// Runs what was recorded and waits for it. For methods that need the host in the middle of a frame; the wait is in
+    /// the frame's time.
+    pub fn submit_and_wait(&mut self) -> Result<()> {
+        let gpu = self.gpu.clone();
+        let vulkan = gpu.vulkan()?;
+        let ops = self.recorder.take();
+        if ops.is_empty() {
+            return Ok(());
+        }
+        let queries = match self.queries.take() {
+            Some(queries) => queries,
+            None => vulkan.queries.take(vulkan)?,
+        };
+        let result = self.run(vulkan, &queries, &ops);
+        self.queries = Some(queries);
+        result
+    }
+
+    fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[crate::recorder::Recorded]) -> Result<()> {
+        let how = lower::How {
+            timer: self.timer,
+            statistics: if self.count_statistics { queries.statistics } else { None },
+            timestamps: queries.timestamps,
+            barrier_every_stage: self.gpu.0.barrier_every_stage,
+        };
+        let lowered: Lowered = lower::lower(vulkan, ops, &how)?;
+        self.report.host_ms += self.host_since.elapsed().as_secs_f64() * 1e3;
+        let started = *self.first_submit.get_or_insert_with(Instant::now);
+        let done = vulkan.run(lowered.commands);
+        self.report.frame_ms = started.elapsed().as_secs_f64() * 1e3;
+        self.host_since = Instant::now();
+        self.report.submissions += 1;
+        let named = || ops.iter().map(|op| op.label.as_str()).collect::<Vec<_>>().join(", ");
+        done.map_err(|result| lower::submit_error(result, named()))?;
+        self.report.stages.extend(lower::stage_times(vulkan, queries.timestamps, ops)?);
+        if let Some(pool) = how.statistics {
+            let counted = lower::statistics(vulkan, pool)?;
+            let sum = self.report.statistics.get_or_insert_default();
+            sum.primitives += counted.primitives;
+            sum.fragments += counted.fragments;
+        }
+        Ok(())
+    }
+
+    /// Runs what was recorded, waits, and reads a buffer: a read-back in the middle of a frame.
+    pub fn read<T: Pod>(&mut self, buffer: &Buffer<T>) -> Result<Vec<T>> {
+        self.submit_and_wait()?;
+        buffer.read()
+    }
+
+    /// Runs what is left and reports what the frame did. A message of the validation layer is an error.
+    pub fn finish(mut self) -> Result<FrameReport> {
+        self.submit_and_wait()?;
+        if self.gpu.vulkan()?.instance.validating {
+            if let Some(message) = self.gpu.take_messages().into_iter().next() {
+                return Err(Error::Validation { stage: message.stage, text: message.text });
+            }
+        }
+        Ok(std::mem::take(&mut self.report))
+    }
+}
+
+impl Drop for Frame {
+    fn drop(&mut self) {
+        if let Some(vulkan) = &self.gpu.0.vulkan {
+            vulkan.frames_alive.fetch_sub(1, Ordering::AcqRel);
+            if let Some(queries) = self.queries.take() {
+                vulkan.queries.give_back(queries);
+            }
+        }
+    }
+}
+
+impl Gpu {
+    /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
+    pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
+        match bound {
+            Bound::Buffer { raw, offset: 0, size, .. } => {
+                let bytes = self.stage_from_buffer(ash::vk::Handle::from_raw(*raw), *size as usize)?;
+                Ok(bytemuck::pod_collect_to_vec(&bytes[..bytes.len() / size_of::<T>() * size_of::<T>()]))
+            }
+            _ => Ok(Vec::new()),
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! The opened device, and everything made from it.
+
+use crate::adapter::{self, AdapterInfo};
+use crate::error::Named;
+use crate::instance::Instance;
+use crate::memory::{Retired, RetiredList};
+use crate::pipeline::Pipelines;
+use crate::timers::{self, QueryStore, TimerMode};
+use crate::{pipeline_cache, Error, Frame, Message, Result};
+use ash::vk;
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use shaders::ResourceId;
+use std::mem::ManuallyDrop;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+
+/// How to open a device.
+#[derive(Clone, Debug, Default)]
+pub struct GpuOptions {
+    /// Index, or part of the name; none takes the best.
+    pub device: Option<String>,
+    /// Turn on the validation layer with synchronization validation; any message fails the frame.
+    pub validation: bool,
+    /// How stages are timed; none decides by a self-check.
+    pub timer: Option<TimerMode>,
+    /// Where the pipeline cache lies; none keeps it in memory.
+    pub cache_dir: Option<PathBuf>,
+    /// Put a barrier before every stage, to tell a missing barrier from another bug.
+    pub barrier_every_stage: bool,
+}
+
+/// An opened Vulkan device, or a recorder without one. Cheap to clone.
+#[derive(Clone)]
+pub struct Gpu(pub(crate) Arc<Inner>);
+
+pub(crate) struct Inner {
+    pub(crate) vulkan: Option<Vulkan>,
+    next_id: AtomicU32,
+    names: Mutex<Vec<String>>,
+    pub(crate) barrier_every_stage: bool,
+}
+
+pub(crate) struct Vulkan {
+    pub(crate) device: ash::Device,
+    pub(crate) push: ash::khr::push_descriptor::Device,
+    pub(crate) labels: Option<ash::ext::debug_utils::Device>,
+    pub(crate) queue: Mutex<vk::Queue>,
+    pub(crate) pool: Mutex<vk::CommandPool>,
+    pub(crate) allocator: ManuallyDrop<Mutex<Allocator>>,
+    pub(crate) pipelines: Pipelines,
+    pub(crate) info: AdapterInfo,
+    pub(crate) memory_bytes: AtomicU64,
+    pub(crate) retired: RetiredList,
+    pub(crate) queries: QueryStore,
+    pub(crate) frames_alive: AtomicUsize,
+    pub(crate) statistics: bool,
+    timer: OnceLock<TimerMode>,
+    pub(crate) instance: Instance,
+}
+
+/// A lock that a panic elsewhere does not take away: the data is only ever replaced whole.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+impl Gpu {
+    /// Opens a device.
+    pub fn open(options: &GpuOptions) -> Result<Self> {
+        let instance = Instance::new(options)?;
+        let (physical, info) = adapter::choose(&instance, options.device.as_deref())?;
+        let family = graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
+            device: info.name.clone(),
+            missing: "a queue for graphics and compute".to_owned(),
+        })?;
+        let statistics = info.optional.iter().any(|(name, present, _)| *name == "pipelineStatisticsQuery" && *present);
+        let device = create_device(&instance.raw, physical, family, statistics)?;
+        let vulkan = Vulkan::new(instance, physical, device, family, info, statistics, options)?;
+        let gpu = Gpu(Arc::new(Inner {
+            vulkan: Some(vulkan),
+            next_id: AtomicU32::new(0),
+            names: Mutex::default(),
+            barrier_every_stage: options.barrier_every_stage,
+        }));
+        let mode = match options.timer {
+            Some(mode) => mode,
+            None => timers::self_check(&gpu)?,
+        };
+        if let Some(vulkan) = &gpu.0.vulkan {
+            vulkan.timer.get_or_init(|| mode);
+        }
+        Ok(gpu)
+    }
+
+    /// An engine without a device: frames are recorded and can be read as text, but not run.
+    pub fn without_device() -> Self {
+        Gpu(Arc::new(Inner { vulkan: None, next_id: AtomicU32::new(0), names: Mutex::default(), barrier_every_stage: false }))
+    }
+
+    /// What is known of the device; none without one.
+    pub fn info(&self) -> Option<&AdapterInfo> {
+        self.0.vulkan.as_ref().map(|vulkan| &vulkan.info)
+    }
+
+    /// How stages are timed on this device.
+    pub fn timer_mode(&self) -> TimerMode {
+        self.0.vulkan.as_ref().and_then(|vulkan| vulkan.timer.get().copied()).unwrap_or(TimerMode::Split)
+    }
+
+    /// Lanes of a subgroup; 8 without a device.
+    pub fn subgroup_size(&self) -> u32 {
+        self.info().map_or(8, |info| info.subgroup_size)
+    }
+
+    /// The grid that vertex positions are snapped to, in pixels.
+    pub fn snap_px(&self) -> f32 {
+        self.info().map_or(1.0 / 256.0, |info| info.snap_px)
+    }
+
+    /// Device memory in use, in MiB.
+    pub fn memory_mib(&self) -> f64 {
+        let bytes = self.0.vulkan.as_ref().map_or(0, |vulkan| vulkan.memory_bytes.load(Ordering::Relaxed));
+        bytes as f64 / (1024.0 * 1024.0)
+    }
+
+    /// Starts recording a frame.
+    pub fn frame(&self) -> Frame {
+        Frame::new(self)
+    }
+
+    /// What the validation layer said since this was last asked.
+    pub fn take_messages(&self) -> Vec<Message> {
+        self.0.vulkan.as_ref().map(|vulkan| vulkan.instance.messages.take()).unwrap_or_default()
+    }
+
+    /// The name that a resource was made with.
+    pub fn resource_name(&self, id: ResourceId) -> String {
+        lock(&self.0.names).get(id.0 as usize).cloned().unwrap_or_default()
+    }
+
+    /// Writes the pipeline cache to disk, if it has a place there. Failing to is no error: it is only a cache.
+    pub fn save_pipeline_cache(&self) {
+        if let Some(vulkan) = &self.0.vulkan {
+            pipeline_cache::save(&vulkan.device, &vulkan.pipelines);
+        }
+    }
+
+    pub(crate) fn new_id(&self, name: &str) -> ResourceId {
+        let mut names = lock(&self.0.names);
+        let id = self.0.next_id.fetch_add(1, Ordering::Relaxed);
+        names.push(name.to_owned());
+        ResourceId(id)
+    }
+
+    pub(crate) fn vulkan(&self) -> Result<&Vulkan> {
+        self.0.vulkan.as_ref().ok_or(Error::RecordingOnly)
+    }
+}
+
+fn graphics_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
+    // SAFETY: the handle comes from this instance.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    families.iter().position(|family| family.queue_flags.contains(wanted)).map(|index| index as u32)
+}
+
+fn create_device(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32, statistics: bool) -> Result<ash::Device> {
+    let priorities = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
+    let core = vk::PhysicalDeviceFeatures::default()
+        .multi_draw_indirect(true)
+        .draw_indirect_first_instance(true)
+        .fragment_stores_and_atomics(true)
+        .pipeline_statistics_query(statistics);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().draw_indirect_count(true).scalar_block_layout(true).host_query_reset(true);
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true)
+        .maintenance4(true)
+        .subgroup_size_control(true)
+        .compute_full_subgroups(true);
+    let extensions = [ash::khr::push_descriptor::NAME.as_ptr()];
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&core)
+        .push_next(&mut v12)
+        .push_next(&mut v13);
+    // SAFETY: the features were checked by `adapter::choose`; everything pointed to lives through the call.
+    unsafe { instance.create_device(physical, &info, None) }.named("vkCreateDevice")
+}
+
+impl Vulkan {
+    fn new(
+        instance: Instance,
+        physical: vk::PhysicalDevice,
+        device: ash::Device,
+        family: u32,
+        info: AdapterInfo,
+        statistics: bool,
+        options: &GpuOptions,
+    ) -> Result<Self> {
+        let push = ash::khr::push_descriptor::Device::new(&instance.raw, &device);
+        // SAFETY: the extension is loaded when its function answers; without it labels are left out.
+        let has_labels = unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }.is_some();
+        let labels = has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device));
+        // SAFETY: the family was asked for when the device was made.
+        let queue = unsafe { device.get_device_queue(family, 0) };
+        let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(family).flags(vk::CommandPoolCreateFlags::TRANSIENT);
+        // SAFETY: the device is alive.
+        let pool = unsafe { device.create_command_pool(&pool_info, None) }.named("vkCreateCommandPool")?;
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.raw.clone(),
+            device: device.clone(),
+            physical_device: physical,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: Default::default(),
+        })
+        .map_err(|source| Error::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, source })?;
+        let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref())?;
+        Ok(Vulkan {
+            push,
+            labels,
+            queue: Mutex::new(queue),
+            pool: Mutex::new(pool),
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            pipelines,
+            info,
+            memory_bytes: AtomicU64::new(0),
+            retired: RetiredList::default(),
+            queries: QueryStore::default(),
+            frames_alive: AtomicUsize::new(0),
+            statistics,
+            timer: OnceLock::new(),
+            instance,
+            device,
+        })
+    }
+
+    /// Frees what was dropped, if no recorded frame can still name it.
+    pub(crate) fn bury(&self) {
+        if self.frames_alive.load(Ordering::Acquire) == 0 {
+            let retired: Vec<Retired> = self.retired.take();
+            for one in retired {
+                one.free(self);
+            }
+        }
+    }
+
+    /// Gives a Vulkan object the name that captures and messages show.
+    pub(crate) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let (Some(labels), Ok(name)) = (&self.labels, std::ffi::CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
+        // SAFETY: the handle was just made from this device. A failing name is no reason to stop.
+        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+    }
+}
+
+impl Drop for Vulkan {
+    fn drop(&mut self) {
+        // SAFETY: after the wait nothing is in use; objects go before the device, and the instance goes after this.
+        unsafe {
+            let _ = self.device.device_wait_idle();
+        }
+        for one in self.retired.take() {
+            one.free(self);
+        }
+        pipeline_cache::save(&self.device, &self.pipelines);
+        self.pipelines.destroy(&self.device);
+        self.queries.destroy(&self.device);
+        // SAFETY: dropped once, here; no allocation outlives it because buffers and images hold the `Gpu`.
+        unsafe { ManuallyDrop::drop(&mut self.allocator) };
+        // SAFETY: as above.
+        unsafe {
+            self.device.destroy_command_pool(*lock(&self.pool), None);
+            self.device.destroy_device(None);
+        }
+    }
+}

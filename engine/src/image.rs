@@ -1,0 +1,190 @@
+//! Images, always in the general layout, and the targets made of them.
+
+use crate::error::Named;
+use crate::gpu::{Gpu, Vulkan};
+use crate::memory::Retired;
+use crate::{Error, Result};
+use ash::vk;
+use gpu_allocator::vulkan::Allocation;
+use gpu_allocator::MemoryLocation;
+use shaders::{ImageRef, ResourceId};
+use vk::Handle;
+
+/// What an image holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Red, green, blue, alpha, 8 bits each.
+    Colour,
+    /// An object index a pixel: the item buffer.
+    Item,
+    /// 32-bit float depth, reversed: 1 near, 0 far.
+    Depth,
+    /// A half float a pixel: counts of fragments.
+    Heat,
+}
+
+impl Format {
+    pub(crate) fn vulkan(self) -> vk::Format {
+        match self {
+            Format::Colour => vk::Format::R8G8B8A8_UNORM,
+            Format::Item => vk::Format::R32_UINT,
+            Format::Depth => vk::Format::D32_SFLOAT,
+            Format::Heat => vk::Format::R16_SFLOAT,
+        }
+    }
+
+    fn aspect(self) -> vk::ImageAspectFlags {
+        if self == Format::Depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+    }
+
+    /// Bytes a texel.
+    pub fn texel_bytes(self) -> usize {
+        if self == Format::Heat { 2 } else { 4 }
+    }
+
+    /// The name of the Vulkan format.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Colour => "R8G8B8A8_UNORM",
+            Format::Item => "R32_UINT",
+            Format::Depth => "D32_SFLOAT (reversed)",
+            Format::Heat => "R16_SFLOAT",
+        }
+    }
+}
+
+/// A 2D image with one level.
+pub struct Image {
+    gpu: Gpu,
+    id: ResourceId,
+    raw: vk::Image,
+    view: vk::ImageView,
+    allocation: Option<Allocation>,
+    format: Format,
+    size: [u32; 2],
+}
+
+impl Image {
+    /// Makes an image of `size` in pixels. Its contents are undefined until it is cleared or drawn to.
+    pub fn new(gpu: &Gpu, name: &str, format: Format, size: [u32; 2]) -> Result<Self> {
+        let id = gpu.new_id(name);
+        let mut image =
+            Image { gpu: gpu.clone(), id, raw: vk::Image::null(), view: vk::ImageView::null(), allocation: None, format, size };
+        if let Some(vulkan) = &gpu.0.vulkan {
+            check_size(vulkan, name, size)?;
+            image.create(vulkan, name)?;
+        }
+        Ok(image)
+    }
+
+    /// The image as a stage binds it.
+    pub fn view(&self) -> ImageRef {
+        ImageRef { id: self.id, view: self.view.as_raw() }
+    }
+
+    /// What it holds.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Reads the whole image, row by row from the top, now; the device must be idle (between frames).
+    pub fn read(&self) -> Result<Vec<u8>> {
+        self.gpu.stage_from_image(self.raw, self.format.aspect(), self.size, self.format.texel_bytes())
+    }
+
+    fn create(&mut self, vulkan: &Vulkan, name: &str) -> Result<()> {
+        let attachment = match self.format {
+            Format::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            _ => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        };
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(self.format.vulkan())
+            .extent(vk::Extent3D { width: self.size[0], height: self.size[1], depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(attachment | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST);
+        // SAFETY: the device is alive and the size was checked. What fails half-way is freed by `Drop` of `self`'s retired
+        // parts or, for a bare image, leaks only until the device goes, which follows such an error.
+        unsafe {
+            self.raw = vulkan.device.create_image(&info, None).named("vkCreateImage")?;
+            let requirements = vulkan.device.get_image_memory_requirements(self.raw);
+            let allocation = vulkan.allocate(name, requirements, MemoryLocation::GpuOnly, false)?;
+            let (memory, offset) = (allocation.memory(), allocation.offset());
+            self.allocation = Some(allocation);
+            vulkan.device.bind_image_memory(self.raw, memory, offset).named("vkBindImageMemory")?;
+            let range = self.range();
+            let view = vk::ImageViewCreateInfo::default()
+                .image(self.raw)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(self.format.vulkan())
+                .subresource_range(range);
+            self.view = vulkan.device.create_image_view(&view, None).named("vkCreateImageView")?;
+        }
+        vulkan.name(self.raw, name);
+        vulkan.name(self.view, name);
+        self.to_general_layout(vulkan)
+    }
+
+    fn range(&self) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange { aspect_mask: self.format.aspect(), base_mip_level: 0, level_count: 1, base_array_layer: 0, layer_count: 1 }
+    }
+
+    fn to_general_layout(&self, vulkan: &Vulkan) -> Result<()> {
+        let barrier = [vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
+            .old_layout(vk::ImageLayout::UNDEFINED)
+            .new_layout(vk::ImageLayout::GENERAL)
+            .image(self.raw)
+            .subresource_range(self.range())];
+        // SAFETY: the image is alive and unused.
+        vulkan.run_once(|device, commands| unsafe {
+            device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().image_memory_barriers(&barrier));
+        })
+    }
+}
+
+fn check_size(vulkan: &Vulkan, name: &str, size: [u32; 2]) -> Result<()> {
+    let limit = vulkan.info.max_image_px;
+    if size.iter().all(|side| (1..=limit).contains(side)) {
+        return Ok(());
+    }
+    Err(Error::TooLarge {
+        what: format!("image '{name}'"),
+        wanted: format!("{}x{} pixels", size[0], size[1]),
+        limit: format!("1 to {limit} pixels a side"),
+        device: vulkan.info.name.clone(),
+        remedy: "choose another --size".to_owned(),
+    })
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
+            vulkan.retired.push(Retired { buffer: vk::Buffer::null(), image: self.raw, view: self.view, allocation });
+            vulkan.bury();
+        }
+    }
+}
+
+/// What a frame draws to. The item buffer is bound only where a truth or method needs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// First colour attachment, with what it holds.
+    pub colour: Option<(ImageRef, Format)>,
+    /// The item buffer.
+    pub item: Option<ImageRef>,
+    /// The depth buffer.
+    pub depth: ImageRef,
+}

@@ -1,0 +1,318 @@
+//! From recorded steps to a Vulkan command buffer.
+
+use crate::barriers::{Barrier, Point};
+use crate::error::Named;
+use crate::frame::{StageTime, Statistics};
+use crate::gpu::Vulkan;
+use crate::image::Target;
+use crate::pipeline::{descriptor_type, DrawState, Pipeline};
+use crate::recorder::{IndexedIndirect, Op, Recorded};
+use crate::timers::{TimerMode, MAX_TIMESTAMPS};
+use crate::transfer::full_barrier;
+use crate::{Error, Result};
+use ash::vk;
+use shaders::{Bound, BoundStage};
+use vk::Handle;
+
+/// How a submission is run.
+pub(crate) struct How {
+    pub(crate) timer: TimerMode,
+    pub(crate) statistics: Option<vk::QueryPool>,
+    pub(crate) timestamps: vk::QueryPool,
+    pub(crate) barrier_every_stage: bool,
+}
+
+/// A command buffer ready to run.
+pub(crate) struct Lowered {
+    pub(crate) commands: vk::CommandBuffer,
+}
+
+struct Recording<'a> {
+    vulkan: &'a Vulkan,
+    commands: vk::CommandBuffer,
+}
+
+pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowered> {
+    let stamps = ops.len() as u32 + 1;
+    if stamps > MAX_TIMESTAMPS {
+        return Err(Error::TooLarge {
+            what: "a frame".to_owned(),
+            wanted: format!("{} stages", ops.len()),
+            limit: format!("{} stages a submission", MAX_TIMESTAMPS - 1),
+            device: vulkan.info.name.clone(),
+            remedy: "use a method option that needs fewer".to_owned(),
+        });
+    }
+    let commands = vulkan.begin_commands()?;
+    let recording = Recording { vulkan, commands };
+    let device = &vulkan.device;
+    // SAFETY: pools are this frame's own and idle; the command buffer is recording.
+    unsafe {
+        device.reset_query_pool(how.timestamps, 0, stamps);
+        full_barrier(device, commands);
+        if let Some(pool) = how.statistics {
+            device.reset_query_pool(pool, 0, 1);
+            device.cmd_begin_query(commands, pool, 0, vk::QueryControlFlags::empty());
+        }
+    }
+    recording.stamp(how, 0);
+    for (index, recorded) in ops.iter().enumerate() {
+        recording.label(&recorded.label);
+        if how.barrier_every_stage {
+            full_barrier(device, commands);
+        } else if let Some(barrier) = &recorded.barrier {
+            recording.barrier(barrier);
+        }
+        recording.op(&recorded.op)?;
+        recording.stamp(how, index as u32 + 1);
+        recording.end_label();
+    }
+    if let Some(pool) = how.statistics {
+        // SAFETY: the query was begun above, outside any rendering.
+        unsafe { device.cmd_end_query(commands, pool, 0) };
+    }
+    full_barrier(device, commands);
+    Ok(Lowered { commands })
+}
+
+impl Recording<'_> {
+    fn stamp(&self, how: &How, index: u32) {
+        let device = &self.vulkan.device;
+        // SAFETY: `index` is within the pool: `lower` checked it.
+        unsafe { device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, how.timestamps, index) };
+        if how.timer == TimerMode::Split {
+            full_barrier(device, self.commands);
+        }
+    }
+
+    fn label(&self, label: &str) {
+        let (Some(labels), Ok(name)) = (&self.vulkan.labels, std::ffi::CString::new(label)) else { return };
+        // SAFETY: the name lives through the call; every label is ended by `end_label`.
+        unsafe { labels.cmd_begin_debug_utils_label(self.commands, &vk::DebugUtilsLabelEXT::default().label_name(&name)) };
+    }
+
+    fn end_label(&self) {
+        if let Some(labels) = &self.vulkan.labels {
+            // SAFETY: a label is open.
+            unsafe { labels.cmd_end_debug_utils_label(self.commands) };
+        }
+    }
+
+    fn barrier(&self, barrier: &Barrier) {
+        let mut stages = vk::PipelineStageFlags2::empty();
+        let mut accesses = vk::AccessFlags2::empty();
+        for point in Point::ALL.into_iter().filter(|point| barrier.after & point.bit() != 0) {
+            let (stage, write) = source(point);
+            stages |= stage;
+            accesses |= if barrier.written & point.bit() != 0 { write } else { vk::AccessFlags2::empty() };
+        }
+        let memory = [vk::MemoryBarrier2::default()
+            .src_stage_mask(stages)
+            .src_access_mask(accesses)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)];
+        let info = vk::DependencyInfo::default().memory_barriers(&memory);
+        // SAFETY: the command buffer is recording, outside a rendering.
+        unsafe { self.vulkan.device.cmd_pipeline_barrier2(self.commands, &info) };
+    }
+
+    fn op(&self, op: &Op) -> Result<()> {
+        let device = &self.vulkan.device;
+        match op {
+            Op::Dispatch { stage, groups } => {
+                self.bind(stage, None)?;
+                // SAFETY: pipeline, descriptors and push constants are bound.
+                unsafe { device.cmd_dispatch(self.commands, *groups, 1, 1) };
+            }
+            Op::DispatchIndirect { stage, groups } => {
+                self.bind(stage, None)?;
+                // SAFETY: as above; the buffer holds three words.
+                unsafe { device.cmd_dispatch_indirect(self.commands, vk::Buffer::from_raw(groups.raw), groups.offset) };
+            }
+            Op::Draw { stage, draw, target } => self.draw(stage, draw, target)?,
+            Op::Clear { target } => self.rendering(target, vk::AttachmentLoadOp::CLEAR, || ()),
+            Op::Fill { buffer, value } => {
+                let (raw, offset, size) = range(buffer);
+                // SAFETY: the range lies in the buffer; all our buffers have transfer usage and whole words.
+                unsafe { device.cmd_fill_buffer(self.commands, raw, offset, size, *value) };
+            }
+            Op::Copy { from, to } => {
+                let ((from, src_offset, size), (to, dst_offset, _)) = (range(from), range(to));
+                let region = [vk::BufferCopy { src_offset, dst_offset, size }];
+                // SAFETY: the destination is at least as long, by `Frame::copy`'s contract.
+                unsafe { device.cmd_copy_buffer(self.commands, from, to, &region) };
+            }
+        }
+        Ok(())
+    }
+
+    fn draw(&self, stage: &BoundStage, draw: &IndexedIndirect, target: &Target) -> Result<()> {
+        let colour = target.colour.map(|(_, format)| format);
+        self.bind(stage, Some(DrawState { colour, item: target.item.is_some(), primitives: draw.primitives }))?;
+        let device = &self.vulkan.device;
+        let (vertices, vertices_at, _) = range(&draw.vertices);
+        let (indices, indices_at, _) = range(&draw.indices);
+        let (commands, commands_at, _) = range(&draw.commands);
+        let stride = 20;
+        self.rendering(target, vk::AttachmentLoadOp::LOAD, || {
+            // SAFETY: inside a rendering with the formats the pipeline was made for; buffers are alive and in range.
+            unsafe {
+                device.cmd_bind_vertex_buffers(self.commands, 0, &[vertices], &[vertices_at]);
+                device.cmd_bind_index_buffer(self.commands, indices, indices_at, vk::IndexType::UINT32);
+                match draw.count {
+                    Some(count) => device.cmd_draw_indexed_indirect_count(
+                        self.commands,
+                        commands,
+                        commands_at,
+                        vk::Buffer::from_raw(count.raw),
+                        count.offset,
+                        draw.max_draws,
+                        stride,
+                    ),
+                    None => device.cmd_draw_indexed_indirect(self.commands, commands, commands_at, draw.max_draws, stride),
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// Runs `inside` between the begin and end of a rendering to the target.
+    fn rendering(&self, target: &Target, load: vk::AttachmentLoadOp, inside: impl FnOnce()) {
+        let [width, height] = target.size;
+        let area = vk::Rect2D { offset: vk::Offset2D { x: 0, y: 0 }, extent: vk::Extent2D { width, height } };
+        let attachment = |view: Option<u64>, clear: vk::ClearValue| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(view.map_or(vk::ImageView::null(), vk::ImageView::from_raw))
+                .image_layout(vk::ImageLayout::GENERAL)
+                .load_op(load)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .clear_value(clear)
+        };
+        let black = vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } };
+        let nothing = vk::ClearValue { color: vk::ClearColorValue { uint32: [shaders::types::ITEM_NONE; 4] } };
+        let far = vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil: 0 } };
+        let colours = [
+            attachment(target.colour.map(|(image, _)| image.view), black),
+            attachment(target.item.map(|image| image.view), nothing),
+        ];
+        let depth = attachment(Some(target.depth.view), far);
+        let info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colours).depth_attachment(&depth);
+        let device = &self.vulkan.device;
+        let viewport = [vk::Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, min_depth: 0.0, max_depth: 1.0 }];
+        // SAFETY: views are alive and in the general layout; begin and end pair up.
+        unsafe {
+            device.cmd_begin_rendering(self.commands, &info);
+            device.cmd_set_viewport(self.commands, 0, &viewport);
+            device.cmd_set_scissor(self.commands, 0, &[area]);
+            inside();
+            device.cmd_end_rendering(self.commands);
+        }
+    }
+
+    fn bind(&self, stage: &BoundStage, draw: Option<DrawState>) -> Result<()> {
+        let device = &self.vulkan.device;
+        let point = if draw.is_some() { vk::PipelineBindPoint::GRAPHICS } else { vk::PipelineBindPoint::COMPUTE };
+        let pipeline: Pipeline = self.vulkan.pipelines.get(device, stage, draw)?;
+        // SAFETY: the pipeline is alive as long as the device.
+        unsafe { device.cmd_bind_pipeline(self.commands, point, pipeline.raw) };
+        self.push_descriptors(stage, pipeline.layout, point);
+        if stage.info.push_size > 0 {
+            let bytes = &stage.push[..stage.info.push_size as usize];
+            // SAFETY: the layout's range is `push_size` bytes for these stages.
+            unsafe { device.cmd_push_constants(self.commands, pipeline.layout, pipeline.push_stages, 0, bytes) };
+        }
+        Ok(())
+    }
+
+    fn push_descriptors(&self, stage: &BoundStage, layout: vk::PipelineLayout, point: vk::PipelineBindPoint) {
+        if stage.resources.is_empty() {
+            return;
+        }
+        let (mut buffers, mut images) = (Vec::new(), Vec::new());
+        for bound in &stage.resources {
+            let (buffer, image) = match bound {
+                Bound::Buffer { raw, offset, size, .. } => (
+                    vk::DescriptorBufferInfo { buffer: vk::Buffer::from_raw(*raw), offset: *offset, range: *size },
+                    vk::DescriptorImageInfo::default(),
+                ),
+                Bound::Image(image) => (
+                    vk::DescriptorBufferInfo::default(),
+                    vk::DescriptorImageInfo::default()
+                        .image_view(vk::ImageView::from_raw(image.view))
+                        .image_layout(vk::ImageLayout::GENERAL),
+                ),
+            };
+            buffers.push([buffer]);
+            images.push([image]);
+        }
+        let writes: Vec<_> = stage
+            .info
+            .bindings
+            .iter()
+            .enumerate()
+            .map(|(index, binding)| {
+                let write =
+                    vk::WriteDescriptorSet::default().dst_binding(binding.binding).descriptor_type(descriptor_type(binding.kind));
+                match stage.resources[index] {
+                    Bound::Buffer { .. } => write.buffer_info(&buffers[index]),
+                    Bound::Image(_) => write.image_info(&images[index]),
+                }
+            })
+            .collect();
+        // SAFETY: the writes fit the layout, as both come from one reflection, and live through the call.
+        unsafe { self.vulkan.push.cmd_push_descriptor_set(self.commands, point, layout, 0, &writes) };
+    }
+}
+
+fn range(bound: &Bound) -> (vk::Buffer, u64, u64) {
+    match bound {
+        Bound::Buffer { raw, offset, size, .. } => (vk::Buffer::from_raw(*raw), *offset, *size),
+        Bound::Image(_) => (vk::Buffer::null(), 0, 0),
+    }
+}
+
+/// The Vulkan stages and write accesses of a point.
+fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
+    use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stage};
+    match point {
+        Point::Indirect => (Stage::DRAW_INDIRECT, Access::empty()),
+        Point::Vertices => (Stage::VERTEX_INPUT, Access::empty()),
+        Point::Drawing => (Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER, Access::SHADER_STORAGE_WRITE),
+        Point::Depth => {
+            (Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS, Access::DEPTH_STENCIL_ATTACHMENT_WRITE)
+        }
+        Point::Colour => (Stage::COLOR_ATTACHMENT_OUTPUT, Access::COLOR_ATTACHMENT_WRITE),
+        Point::Compute => (Stage::COMPUTE_SHADER, Access::SHADER_STORAGE_WRITE),
+        Point::Transfer => (Stage::ALL_TRANSFER, Access::TRANSFER_WRITE),
+    }
+}
+
+/// Turns a failed submission into an error that names its stages.
+pub(crate) fn submit_error(result: vk::Result, stages: String) -> Error {
+    match result {
+        vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { stage: stages },
+        result => Error::Vulkan { call: "vkQueueSubmit2", result },
+    }
+}
+
+/// Reads the timestamps of a finished submission.
+pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
+    let mut ticks = vec![0u64; ops.len() + 1];
+    // SAFETY: the submission is done, and wrote this many timestamps.
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }.named("vkGetQueryPoolResults")?;
+    let ms = f64::from(vulkan.info.timestamp_ns) * 1e-6;
+    let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
+        label: recorded.label.clone(),
+        ms: pair[1].saturating_sub(pair[0]) as f64 * ms,
+    };
+    Ok(ops.iter().zip(ticks.windows(2)).map(time).collect())
+}
+
+/// Reads the pipeline statistics of a finished submission.
+pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statistics> {
+    let mut counted = [[0u64; 2]];
+    // SAFETY: the submission is done and the query was begun and ended in it.
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }.named("vkGetQueryPoolResults")?;
+    Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
+}
+

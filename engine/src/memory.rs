@@ -1,0 +1,219 @@
+//! Buffers. New memory is always zero: drivers do not promise it, and lavapipe does not do it.
+
+use crate::error::Named;
+use crate::gpu::{lock, Gpu, Vulkan};
+use crate::{Error, Result};
+use ash::vk;
+use bytemuck::Pod;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::MemoryLocation;
+use shaders::{BufferRef, ResourceId};
+use std::marker::PhantomData;
+use std::sync::atomic::Ordering;
+use std::sync::Mutex;
+use vk::Handle;
+
+/// What a buffer is for, which decides where it lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// Read and written by stages.
+    Storage,
+    /// Vertices and indices: may be larger than a storage range.
+    Geometry,
+    /// Written by the host each frame, read by stages.
+    Upload,
+    /// Written by stages or copies, read by the host.
+    ReadBack,
+}
+
+/// A typed GPU buffer of a fixed number of elements.
+pub struct Buffer<T> {
+    gpu: Gpu,
+    id: ResourceId,
+    raw: vk::Buffer,
+    bytes: u64,
+    len: usize,
+    allocation: Option<Allocation>,
+    element: PhantomData<fn() -> T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// Makes a zeroed buffer of `len` elements; an empty one still binds (as one element).
+    pub fn new(gpu: &Gpu, name: &str, len: usize, placement: Placement) -> Result<Self> {
+        let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        let id = gpu.new_id(name);
+        let mut buffer = Buffer { gpu: gpu.clone(), id, raw: vk::Buffer::null(), bytes, len, allocation: None, element: PhantomData };
+        if let Some(vulkan) = &gpu.0.vulkan {
+            check_range(vulkan, name, bytes, placement)?;
+            (buffer.raw, buffer.allocation) = create(vulkan, name, bytes, placement)?;
+            buffer.clear(vulkan)?;
+        }
+        Ok(buffer)
+    }
+
+    /// Makes a buffer and fills it.
+    pub fn with_data(gpu: &Gpu, name: &str, data: &[T], placement: Placement) -> Result<Self> {
+        let mut buffer = Self::new(gpu, name, data.len(), placement)?;
+        buffer.write(data)?;
+        Ok(buffer)
+    }
+
+    /// Elements in the buffer.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True if the buffer has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The whole buffer, as a stage binds it.
+    pub fn all(&self) -> BufferRef<T> {
+        BufferRef { id: self.id, raw: self.raw.as_raw(), offset: 0, size: self.bytes, element: PhantomData }
+    }
+
+    /// Writes `data` to the front of the buffer, now. Mapped memory is written directly, other memory through staging.
+    pub fn write(&mut self, data: &[T]) -> Result<()> {
+        assert!(data.len() <= self.len, "writing {} elements to a buffer of {}", data.len(), self.len);
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        if bytes.is_empty() || self.gpu.0.vulkan.is_none() {
+            return Ok(());
+        }
+        if let Some(mapped) = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut) {
+            mapped[..bytes.len()].copy_from_slice(bytes);
+            return Ok(());
+        }
+        self.gpu.clone().stage_to_buffer(self.raw, bytes)
+    }
+
+    /// Reads the whole buffer, now; the device must be idle (between frames).
+    pub fn read(&self) -> Result<Vec<T>> {
+        if let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_slice) {
+            let bytes = &mapped[..self.len * size_of::<T>()];
+            return Ok(bytemuck::pod_collect_to_vec(bytes));
+        }
+        let bytes = self.gpu.stage_from_buffer(self.raw, self.len * size_of::<T>())?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    fn clear(&mut self, vulkan: &Vulkan) -> Result<()> {
+        if let Some(mapped) = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut) {
+            mapped.fill(0);
+            return Ok(());
+        }
+        let raw = self.raw;
+        vulkan.run_once(|device, commands| {
+            // SAFETY: the buffer was just made with transfer usage; the command buffer is recording.
+            unsafe { device.cmd_fill_buffer(commands, raw, 0, vk::WHOLE_SIZE, 0) };
+        })
+    }
+}
+
+fn check_range(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Result<()> {
+    if placement == Placement::Geometry || bytes <= vulkan.info.max_storage_bytes {
+        return Ok(());
+    }
+    Err(Error::TooLarge {
+        what: format!("buffer '{name}'"),
+        wanted: format!("{bytes} bytes"),
+        limit: format!("{} bytes in one storage buffer", vulkan.info.max_storage_bytes),
+        device: vulkan.info.name.clone(),
+        remedy: "use a smaller --scale".to_owned(),
+    })
+}
+
+fn create(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Result<(vk::Buffer, Option<Allocation>)> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+        | vk::BufferUsageFlags::INDIRECT_BUFFER
+        | vk::BufferUsageFlags::VERTEX_BUFFER
+        | vk::BufferUsageFlags::INDEX_BUFFER
+        | vk::BufferUsageFlags::TRANSFER_SRC
+        | vk::BufferUsageFlags::TRANSFER_DST;
+    let info = vk::BufferCreateInfo::default().size(bytes).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+    // SAFETY: the device is alive.
+    let raw = unsafe { vulkan.device.create_buffer(&info, None) }.named("vkCreateBuffer")?;
+    // SAFETY: the buffer was just made.
+    let requirements = unsafe { vulkan.device.get_buffer_memory_requirements(raw) };
+    let location = match placement {
+        Placement::Storage | Placement::Geometry => MemoryLocation::GpuOnly,
+        Placement::Upload => MemoryLocation::CpuToGpu,
+        Placement::ReadBack => MemoryLocation::GpuToCpu,
+    };
+    let allocation = vulkan.allocate(name, requirements, location, true);
+    let bound = allocation.and_then(|allocation| {
+        // SAFETY: the memory was allocated for this buffer's requirements.
+        let bound = unsafe { vulkan.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
+        bound.named("vkBindBufferMemory").map(|()| allocation)
+    });
+    match bound {
+        Ok(allocation) => {
+            vulkan.name(raw, name);
+            Ok((raw, Some(allocation)))
+        }
+        Err(error) => {
+            // SAFETY: nothing uses the buffer.
+            unsafe { vulkan.device.destroy_buffer(raw, None) };
+            Err(error)
+        }
+    }
+}
+
+impl Vulkan {
+    pub(crate) fn allocate(&self, name: &str, requirements: vk::MemoryRequirements, location: MemoryLocation, linear: bool) -> Result<Allocation> {
+        let description = AllocationCreateDesc { name, requirements, location, linear, allocation_scheme: AllocationScheme::GpuAllocatorManaged };
+        let allocation = lock(&self.allocator).allocate(&description).map_err(|source| Error::OutOfMemory {
+            what: name.to_owned(),
+            mib: requirements.size as f64 / (1024.0 * 1024.0),
+            source,
+        })?;
+        self.memory_bytes.fetch_add(allocation.size(), Ordering::Relaxed);
+        Ok(allocation)
+    }
+}
+
+impl<T> Drop for Buffer<T> {
+    fn drop(&mut self) {
+        if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
+            vulkan.retired.push(Retired { buffer: self.raw, image: vk::Image::null(), view: vk::ImageView::null(), allocation });
+            vulkan.bury();
+        }
+    }
+}
+
+/// What was dropped but may still be named by a recorded frame.
+pub(crate) struct Retired {
+    pub(crate) buffer: vk::Buffer,
+    pub(crate) image: vk::Image,
+    pub(crate) view: vk::ImageView,
+    pub(crate) allocation: Allocation,
+}
+
+impl Retired {
+    pub(crate) fn free(self, vulkan: &Vulkan) {
+        // SAFETY: its owner is gone, no frame is alive, and the device is idle between frames. Null handles are ignored.
+        unsafe {
+            vulkan.device.destroy_image_view(self.view, None);
+            vulkan.device.destroy_image(self.image, None);
+            vulkan.device.destroy_buffer(self.buffer, None);
+        }
+        vulkan.memory_bytes.fetch_sub(self.allocation.size(), Ordering::Relaxed);
+        if let Err(error) = lock(&vulkan.allocator).free(self.allocation) {
+            tracing::warn!(%error, "freeing device memory");
+        }
+    }
+}
+
+/// The dropped resources that wait to be freed.
+#[derive(Default)]
+pub(crate) struct RetiredList(Mutex<Vec<Retired>>);
+
+impl RetiredList {
+    pub(crate) fn push(&self, retired: Retired) {
+        lock(&self.0).push(retired);
+    }
+
+    pub(crate) fn take(&self) -> Vec<Retired> {
+        std::mem::take(&mut *lock(&self.0))
+    }
+}

@@ -1,0 +1,306 @@
+//! Pipelines, made on first use from what the shader generator wrote down.
+
+use crate::error::Named;
+use crate::gpu::lock;
+use crate::image::Format;
+use crate::recorder::Primitives;
+use crate::{pipeline_cache, AdapterInfo, Error, Result};
+use ash::vk;
+use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo, VertexFormat};
+use std::collections::HashMap;
+use std::ffi::CStr;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+const ENTRY: &CStr = c"main";
+
+/// A pipeline and its layout.
+#[derive(Clone, Copy)]
+pub(crate) struct Pipeline {
+    pub(crate) raw: vk::Pipeline,
+    pub(crate) layout: vk::PipelineLayout,
+    pub(crate) push_stages: vk::ShaderStageFlags,
+}
+
+/// What the drawing state of a pipeline depends on besides its stage.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DrawState {
+    pub(crate) colour: Option<Format>,
+    pub(crate) item: bool,
+    pub(crate) primitives: Primitives,
+}
+
+type Key = (&'static str, Vec<u32>, Option<DrawState>);
+
+/// All pipelines of a device.
+pub(crate) struct Pipelines {
+    made: Mutex<HashMap<Key, Pipeline>>,
+    layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
+    pub(crate) made_any: Mutex<bool>,
+    pub(crate) cache: vk::PipelineCache,
+    pub(crate) cache_file: Option<PathBuf>,
+    subgroup_size: u32,
+}
+
+impl Pipelines {
+    pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>) -> Result<Self> {
+        let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
+        let cache = pipeline_cache::load(device, cache_file.as_deref())?;
+        Ok(Pipelines {
+            made: Mutex::default(),
+            layouts: Mutex::default(),
+            made_any: Mutex::new(false),
+            cache,
+            cache_file,
+            subgroup_size: info.subgroup_size,
+        })
+    }
+
+    /// The pipeline of a stage, with the drawing state if it draws.
+    pub(crate) fn get(&self, device: &ash::Device, stage: &BoundStage, draw: Option<DrawState>) -> Result<Pipeline> {
+        let key: Key = (stage.info.name, stage.constants.clone(), draw);
+        if let Some(pipeline) = lock(&self.made).get(&key) {
+            return Ok(*pipeline);
+        }
+        let layout = self.layout(device, stage.info)?;
+        let raw = match &key.2 {
+            None => self.compute(device, stage, layout)?,
+            Some(state) => self.graphics(device, stage, layout, state)?,
+        };
+        let pipeline = Pipeline { raw, layout, push_stages: stage_flags(stage.info) };
+        *lock(&self.made_any) = true;
+        lock(&self.made).insert(key, pipeline);
+        Ok(pipeline)
+    }
+
+    fn layout(&self, device: &ash::Device, info: &'static StageInfo) -> Result<vk::PipelineLayout> {
+        let mut layouts = lock(&self.layouts);
+        if let Some((_, layout)) = layouts.get(info.name) {
+            return Ok(*layout);
+        }
+        let flags = stage_flags(info);
+        let bindings: Vec<_> = info
+            .bindings
+            .iter()
+            .map(|binding| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding.binding)
+                    .descriptor_type(descriptor_type(binding.kind))
+                    .descriptor_count(1)
+                    .stage_flags(flags)
+            })
+            .collect();
+        let set_info = vk::DescriptorSetLayoutCreateInfo::default()
+            .bindings(&bindings)
+            .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR);
+        // SAFETY: the device is alive; the arrays live through the calls.
+        let set = unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
+        let sets = [set];
+        let ranges = [vk::PushConstantRange { stage_flags: flags, offset: 0, size: info.push_size }];
+        let used = if info.push_size > 0 { &ranges[..] } else { &[] };
+        let layout_info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(used);
+        // SAFETY: as above.
+        let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.named("vkCreatePipelineLayout")?;
+        layouts.insert(info.name, (set, layout));
+        Ok(layout)
+    }
+
+    fn compute(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
+        let constants = Constants::new(stage);
+        let specialization = constants.info();
+        let module = shader(device, &stage.info.modules[0])?;
+        // A stage that counts on its subgroup says so by a constant of this name; the size is then required, not hoped for.
+        let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default().required_subgroup_size(self.subgroup_size);
+        let mut shader_stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(ENTRY)
+            .specialization_info(&specialization);
+        if stage.info.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
+            shader_stage = shader_stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut required);
+        }
+        let info = [vk::ComputePipelineCreateInfo::default().stage(shader_stage).layout(layout)];
+        // SAFETY: the module fits the layout: both come from one reflection.
+        let made = unsafe { device.create_compute_pipelines(self.cache, &info, None) };
+        // SAFETY: a module is not needed once the pipeline is made.
+        unsafe { device.destroy_shader_module(module, None) };
+        first(made, "vkCreateComputePipelines")
+    }
+
+    fn graphics(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout, state: &DrawState) -> Result<vk::Pipeline> {
+        let constants = Constants::new(stage);
+        let specialization = constants.info();
+        let mut modules = Vec::new();
+        for module in stage.info.modules {
+            modules.push((module.kind, shader(device, module)?));
+        }
+        let stages: Vec<_> = modules
+            .iter()
+            .map(|(kind, module)| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(shader_flag(*kind))
+                    .module(*module)
+                    .name(ENTRY)
+                    .specialization_info(&specialization)
+            })
+            .collect();
+        let made = draw_pipeline(device, self.cache, stage.info, layout, state, &stages);
+        for (_, module) in modules {
+            // SAFETY: a module is not needed once the pipeline is made.
+            unsafe { device.destroy_shader_module(module, None) };
+        }
+        made
+    }
+
+    pub(crate) fn destroy(&self, device: &ash::Device) {
+        // SAFETY: called once, when the device is idle and about to go.
+        unsafe {
+            for pipeline in lock(&self.made).values() {
+                device.destroy_pipeline(pipeline.raw, None);
+            }
+            for (set, layout) in lock(&self.layouts).values() {
+                device.destroy_pipeline_layout(*layout, None);
+                device.destroy_descriptor_set_layout(*set, None);
+            }
+            device.destroy_pipeline_cache(self.cache, None);
+        }
+    }
+}
+
+fn draw_pipeline(
+    device: &ash::Device,
+    cache: vk::PipelineCache,
+    info: &StageInfo,
+    layout: vk::PipelineLayout,
+    state: &DrawState,
+    stages: &[vk::PipelineShaderStageCreateInfo<'_>],
+) -> Result<vk::Pipeline> {
+    let (bindings, attributes) = vertex_layout(info);
+    let vertex = vk::PipelineVertexInputStateCreateInfo::default()
+        .vertex_binding_descriptions(&bindings)
+        .vertex_attribute_descriptions(&attributes);
+    let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match state.primitives {
+        Primitives::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+        Primitives::Lines => vk::PrimitiveTopology::LINE_LIST,
+        Primitives::Points => vk::PrimitiveTopology::POINT_LIST,
+    });
+    let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+    // No face culling: mirrored transforms and open meshes are common in what users bring.
+    let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).cull_mode(vk::CullModeFlags::NONE);
+    let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+        .depth_test_enable(true)
+        .depth_write_enable(true)
+        .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
+    let replace = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
+    let add = replace
+        .blend_enable(true)
+        .src_color_blend_factor(vk::BlendFactor::ONE)
+        .dst_color_blend_factor(vk::BlendFactor::ONE)
+        .color_blend_op(vk::BlendOp::ADD);
+    let (formats, blends): (Vec<_>, Vec<_>) =
+        attachment_formats(state).into_iter().map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace })).unzip();
+    let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+    let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+    let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
+    let mut rendering = vk::PipelineRenderingCreateInfo::default()
+        .color_attachment_formats(&formats)
+        .depth_attachment_format(Format::Depth.vulkan());
+    let create = [vk::GraphicsPipelineCreateInfo::default()
+        .stages(stages)
+        .vertex_input_state(&vertex)
+        .input_assembly_state(&assembly)
+        .viewport_state(&viewport)
+        .rasterization_state(&raster)
+        .multisample_state(&samples)
+        .depth_stencil_state(&depth)
+        .color_blend_state(&blend)
+        .dynamic_state(&dynamic)
+        .layout(layout)
+        .push_next(&mut rendering)];
+    // SAFETY: modules, layout and vertex input come from one reflection; everything pointed to lives through the call.
+    first(unsafe { device.create_graphics_pipelines(cache, &create, None) }, "vkCreateGraphicsPipelines")
+}
+
+/// Colour first, then the item buffer; a place without an image is undefined, and what is written there is dropped.
+pub(crate) fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
+    let colour = state.colour.map_or(vk::Format::UNDEFINED, Format::vulkan);
+    let item = if state.item { Format::Item.vulkan() } else { vk::Format::UNDEFINED };
+    vec![colour, item]
+}
+
+fn vertex_layout(info: &StageInfo) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
+    if info.vertex.is_empty() {
+        return (Vec::new(), Vec::new());
+    }
+    let binding = vk::VertexInputBindingDescription { binding: 0, stride: info.vertex_stride, input_rate: vk::VertexInputRate::VERTEX };
+    let attribute = |attribute: &shaders::VertexAttribute| vk::VertexInputAttributeDescription {
+        location: attribute.location,
+        binding: 0,
+        format: match attribute.format {
+            VertexFormat::Float2 => vk::Format::R32G32_SFLOAT,
+            VertexFormat::Float3 => vk::Format::R32G32B32_SFLOAT,
+            VertexFormat::Float4 => vk::Format::R32G32B32A32_SFLOAT,
+            VertexFormat::Snorm16x2 => vk::Format::R16G16_SNORM,
+            VertexFormat::Uint => vk::Format::R32_UINT,
+        },
+        offset: attribute.offset,
+    };
+    (vec![binding], info.vertex.iter().map(attribute).collect())
+}
+
+/// Specialization constants in the form Vulkan takes them.
+struct Constants {
+    entries: Vec<vk::SpecializationMapEntry>,
+    bytes: Vec<u8>,
+}
+
+impl Constants {
+    fn new(stage: &BoundStage) -> Self {
+        let entry = |(index, constant): (usize, &shaders::ConstantInfo)| vk::SpecializationMapEntry {
+            constant_id: constant.id,
+            offset: (index * 4) as u32,
+            size: 4,
+        };
+        let entries = stage.info.constants.iter().enumerate().map(entry).collect();
+        Constants { entries, bytes: bytemuck::cast_slice(&stage.constants).to_vec() }
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default().map_entries(&self.entries).data(&self.bytes)
+    }
+}
+
+fn shader(device: &ash::Device, module: &ShaderModule) -> Result<vk::ShaderModule> {
+    let words: Vec<u32> = module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+    let info = vk::ShaderModuleCreateInfo::default().code(&words);
+    // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
+    unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")
+}
+
+fn first(made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>, call: &'static str) -> Result<vk::Pipeline> {
+    match made {
+        Ok(pipelines) => Ok(pipelines[0]),
+        Err((_, result)) => Err(Error::Vulkan { call, result }),
+    }
+}
+
+fn shader_flag(kind: ShaderKind) -> vk::ShaderStageFlags {
+    match kind {
+        ShaderKind::Vertex => vk::ShaderStageFlags::VERTEX,
+        ShaderKind::Fragment => vk::ShaderStageFlags::FRAGMENT,
+        ShaderKind::Compute => vk::ShaderStageFlags::COMPUTE,
+    }
+}
+
+fn stage_flags(info: &StageInfo) -> vk::ShaderStageFlags {
+    info.modules.iter().fold(vk::ShaderStageFlags::empty(), |flags, module| flags | shader_flag(module.kind))
+}
+
+pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+    }
+}

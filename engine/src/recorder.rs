@@ -1,0 +1,204 @@
+//! What a frame is before it becomes Vulkan: a list of stages with barriers between them. Plain data, readable as text.
+
+use crate::barriers::{Barrier, BarrierTracker, Point, Use};
+use crate::image::Target;
+use shaders::{Access, Bound, BoundStage, BufferRef, ResourceId};
+use std::fmt::Write;
+
+/// How indices form primitives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Primitives {
+    /// Triangle list.
+    #[default]
+    Triangles,
+    /// Line list, one pixel wide.
+    Lines,
+    /// Points, one pixel large.
+    Points,
+}
+
+/// A multi-draw whose commands, and their number, lie on the GPU.
+#[derive(Clone, Copy, Debug)]
+pub struct IndexedIndirect {
+    /// Vertices, as the pipeline's generated vertex struct.
+    pub vertices: Bound,
+    /// 32-bit indices.
+    pub indices: Bound,
+    /// Indexed indirect commands, 20 bytes each, tightly packed.
+    pub commands: Bound,
+    /// How many commands count, on the GPU; none draws `max_draws`.
+    pub count: Option<BufferRef<u32>>,
+    /// Commands there is room for.
+    pub max_draws: u32,
+    /// How indices form primitives.
+    pub primitives: Primitives,
+}
+
+/// One recorded step.
+#[derive(Clone, Debug)]
+pub enum Op {
+    /// A compute stage over a grid of work groups.
+    Dispatch {
+        /// The stage.
+        stage: BoundStage,
+        /// Work groups in x.
+        groups: u32,
+    },
+    /// A compute stage over a grid that lies on the GPU: three words.
+    DispatchIndirect {
+        /// The stage.
+        stage: BoundStage,
+        /// Work groups in x, y and z.
+        groups: BufferRef<u32>,
+    },
+    /// A drawing stage.
+    Draw {
+        /// The stage.
+        stage: BoundStage,
+        /// What is drawn.
+        draw: IndexedIndirect,
+        /// What it is drawn to.
+        target: Target,
+    },
+    /// Colour to black, items to none, depth to far.
+    Clear {
+        /// What is cleared.
+        target: Target,
+    },
+    /// Every word of a buffer to one value.
+    Fill {
+        /// The buffer.
+        buffer: Bound,
+        /// The value.
+        value: u32,
+    },
+    /// One buffer's bytes to another.
+    Copy {
+        /// The source.
+        from: Bound,
+        /// The destination, at least as long.
+        to: Bound,
+    },
+}
+
+/// A step with its label and the barrier before it.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// Stage name, with the part of the frame it belongs to behind a colon.
+    pub label: String,
+    /// The step.
+    pub op: Op,
+    /// The barrier before it.
+    pub barrier: Option<Barrier>,
+}
+
+/// Records steps and derives the barriers between them.
+#[derive(Default)]
+pub struct Recorder {
+    pub(crate) ops: Vec<Recorded>,
+    tracker: BarrierTracker,
+    part: &'static str,
+}
+
+impl Recorder {
+    /// Names the part of the frame that the following steps belong to ("early", "late"); "" for none.
+    pub fn part(&mut self, part: &'static str) {
+        self.part = part;
+    }
+
+    /// The label that a stage recorded now would get.
+    pub fn label(&self, stage: &str) -> String {
+        if self.part.is_empty() { stage.to_owned() } else { format!("{stage}:{}", self.part) }
+    }
+
+    /// Adds a step under the stage name given.
+    pub fn push(&mut self, stage: &str, op: Op) {
+        let barrier = self.tracker.next(&uses(&op));
+        self.ops.push(Recorded { label: self.label(stage), op, barrier });
+    }
+
+    /// Takes what was recorded; what follows is ordered after it by the submission.
+    pub(crate) fn take(&mut self) -> Vec<Recorded> {
+        self.tracker.cut();
+        std::mem::take(&mut self.ops)
+    }
+
+    /// The frame as text: one line a step, with each barrier and the resource that made it necessary.
+    pub fn text(&self, name: impl Fn(ResourceId) -> String) -> String {
+        let mut text = String::new();
+        for recorded in &self.ops {
+            if let Some(barrier) = &recorded.barrier {
+                // Writing to a string does not fail.
+                let _ = writeln!(text, "  barrier after {barrier}; for {}", name(barrier.because));
+            }
+            let _ = writeln!(text, "{} {}", recorded.label, describe(&recorded.op, &name));
+        }
+        text
+    }
+}
+
+fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
+    let bindings = |stage: &BoundStage| {
+        let one = |(info, bound): (&shaders::BindingInfo, &Bound)| format!("{}={}({:?})", info.name, name(resource(bound)), info.access);
+        stage.info.bindings.iter().zip(&stage.resources).map(one).collect::<Vec<_>>().join(" ")
+    };
+    match op {
+        Op::Dispatch { stage, groups } => format!("[{groups} groups] {}", bindings(stage)),
+        Op::DispatchIndirect { stage, groups } => format!("[groups from {}] {}", name(groups.id), bindings(stage)),
+        Op::Draw { stage, draw, .. } => {
+            let count = draw.count.map_or(String::new(), |count| format!(" count={}", name(count.id)));
+            format!("[up to {} draws] commands={}{count} {}", draw.max_draws, name(resource(&draw.commands)), bindings(stage))
+        }
+        Op::Clear { target } => format!("depth={}", name(target.depth.id)),
+        Op::Fill { buffer, value } => format!("{}={value}", name(resource(buffer))),
+        Op::Copy { from, to } => format!("{} to {}", name(resource(from)), name(resource(to))),
+    }
+}
+
+fn resource(bound: &Bound) -> ResourceId {
+    match bound {
+        Bound::Buffer { id, .. } => *id,
+        Bound::Image(image) => image.id,
+    }
+}
+
+/// Everything a step touches, from what the shader declares and what the step itself implies.
+pub(crate) fn uses(op: &Op) -> Vec<Use> {
+    match op {
+        Op::Dispatch { stage, .. } => bindings(stage, Point::Compute),
+        Op::DispatchIndirect { stage, groups } => {
+            let mut uses = bindings(stage, Point::Compute);
+            uses.push(Use::read(groups.id, Point::Indirect));
+            uses
+        }
+        Op::Draw { stage, draw, target } => {
+            let mut uses = bindings(stage, Point::Drawing);
+            uses.push(Use::read(resource(&draw.commands), Point::Indirect));
+            uses.extend(draw.count.map(|count| Use::read(count.id, Point::Indirect)));
+            uses.push(Use::read(resource(&draw.vertices), Point::Vertices));
+            uses.push(Use::read(resource(&draw.indices), Point::Vertices));
+            uses.extend(attachments(target));
+            uses
+        }
+        Op::Clear { target } => attachments(target),
+        Op::Fill { buffer, .. } => vec![Use::write(resource(buffer), Point::Transfer)],
+        Op::Copy { from, to } => vec![Use::read(resource(from), Point::Transfer), Use::write(resource(to), Point::Transfer)],
+    }
+}
+
+fn bindings(stage: &BoundStage, point: Point) -> Vec<Use> {
+    let one = |(info, bound): (&shaders::BindingInfo, &Bound)| Use {
+        resource: resource(bound),
+        point,
+        reads: info.access != Access::Write,
+        writes: info.access != Access::Read,
+    };
+    stage.info.bindings.iter().zip(&stage.resources).map(one).collect()
+}
+
+fn attachments(target: &Target) -> Vec<Use> {
+    let mut uses = vec![Use::both(target.depth.id, Point::Depth)];
+    uses.extend(target.colour.map(|(image, _)| Use::both(image.id, Point::Colour)));
+    uses.extend(target.item.map(|image| Use::both(image.id, Point::Colour)));
+    uses
+}

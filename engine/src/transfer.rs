@@ -1,0 +1,151 @@
+//! Copies outside frames: uploads, read-backs, one-time commands. Each waits until it is done.
+
+use crate::error::Named;
+use crate::gpu::{lock, Gpu, Vulkan};
+use crate::{Error, Result};
+use ash::vk;
+use gpu_allocator::vulkan::Allocation;
+use gpu_allocator::MemoryLocation;
+
+/// Staging is done in pieces of this size, so that a large scene does not need twice its memory.
+const PIECE_BYTES: usize = 32 << 20;
+
+/// A mapped buffer that lives for one copy.
+struct Staging<'a> {
+    vulkan: &'a Vulkan,
+    raw: vk::Buffer,
+    allocation: Option<Allocation>,
+}
+
+impl<'a> Staging<'a> {
+    fn new(vulkan: &'a Vulkan, bytes: usize, location: MemoryLocation) -> Result<Self> {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+        let info = vk::BufferCreateInfo::default().size(bytes.max(4) as u64).usage(usage);
+        // SAFETY: the device is alive.
+        let raw = unsafe { vulkan.device.create_buffer(&info, None) }.named("vkCreateBuffer")?;
+        let mut staging = Staging { vulkan, raw, allocation: None };
+        // SAFETY: the buffer was just made.
+        let requirements = unsafe { vulkan.device.get_buffer_memory_requirements(raw) };
+        let allocation = vulkan.allocate("staging", requirements, location, true)?;
+        // SAFETY: the memory was allocated for this buffer's requirements.
+        unsafe { vulkan.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }.named("vkBindBufferMemory")?;
+        staging.allocation = Some(allocation);
+        Ok(staging)
+    }
+
+    fn bytes(&mut self) -> Result<&mut [u8]> {
+        let mapped = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut);
+        mapped.ok_or(Error::Vulkan { call: "mapping staging memory", result: vk::Result::ERROR_MEMORY_MAP_FAILED })
+    }
+}
+
+impl Drop for Staging<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the copy has been waited for.
+        unsafe { self.vulkan.device.destroy_buffer(self.raw, None) };
+        if let Some(allocation) = self.allocation.take() {
+            self.vulkan.memory_bytes.fetch_sub(allocation.size(), std::sync::atomic::Ordering::Relaxed);
+            if let Err(error) = lock(&self.vulkan.allocator).free(allocation) {
+                tracing::warn!(%error, "freeing staging memory");
+            }
+        }
+    }
+}
+
+impl Gpu {
+    pub(crate) fn stage_to_buffer(&self, to: vk::Buffer, bytes: &[u8]) -> Result<()> {
+        let vulkan = self.vulkan()?;
+        let mut staging = Staging::new(vulkan, bytes.len().min(PIECE_BYTES), MemoryLocation::CpuToGpu)?;
+        for (index, piece) in bytes.chunks(PIECE_BYTES).enumerate() {
+            staging.bytes()?[..piece.len()].copy_from_slice(piece);
+            let region = vk::BufferCopy { src_offset: 0, dst_offset: (index * PIECE_BYTES) as u64, size: piece.len() as u64 };
+            let from = staging.raw;
+            // SAFETY: both buffers are alive through the wait and the region lies in both.
+            vulkan.run_once(|device, commands| unsafe { device.cmd_copy_buffer(commands, from, to, &[region]) })?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn stage_from_buffer(&self, from: vk::Buffer, bytes: usize) -> Result<Vec<u8>> {
+        if bytes == 0 {
+            return Ok(Vec::new());
+        }
+        let vulkan = self.vulkan()?;
+        let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
+        let (to, region) = (staging.raw, vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes as u64 });
+        // SAFETY: as above.
+        vulkan.run_once(|device, commands| unsafe { device.cmd_copy_buffer(commands, from, to, &[region]) })?;
+        Ok(staging.bytes()?[..bytes].to_vec())
+    }
+
+    pub(crate) fn stage_from_image(&self, from: vk::Image, aspect: vk::ImageAspectFlags, size: [u32; 2], texel_bytes: usize) -> Result<Vec<u8>> {
+        let vulkan = self.vulkan()?;
+        let bytes = size[0] as usize * size[1] as usize * texel_bytes;
+        let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
+        let to = staging.raw;
+        let layers = vk::ImageSubresourceLayers { aspect_mask: aspect, mip_level: 0, base_array_layer: 0, layer_count: 1 };
+        let extent = vk::Extent3D { width: size[0], height: size[1], depth: 1 };
+        let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(extent);
+        vulkan.run_once(|device, commands| {
+            // SAFETY: the image is in the general layout and alive through the wait; the buffer has room for it.
+            unsafe { device.cmd_copy_image_to_buffer(commands, from, vk::ImageLayout::GENERAL, to, &[region]) };
+        })?;
+        Ok(staging.bytes()?[..bytes].to_vec())
+    }
+}
+
+/// Everything before, before everything after: for the edges of submissions, where no tracker looks.
+pub(crate) fn full_barrier(device: &ash::Device, commands: vk::CommandBuffer) {
+    let barrier = [vk::MemoryBarrier2::default()
+        .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+        .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)];
+    // SAFETY: the command buffer is recording, outside a rendering.
+    unsafe { device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().memory_barriers(&barrier)) };
+}
+
+impl Vulkan {
+    /// Records commands, runs them between full barriers and waits.
+    pub(crate) fn run_once(&self, record: impl FnOnce(&ash::Device, vk::CommandBuffer)) -> Result<()> {
+        let commands = self.begin_commands()?;
+        full_barrier(&self.device, commands);
+        record(&self.device, commands);
+        full_barrier(&self.device, commands);
+        self.run(commands).map_err(|result| match result {
+            vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { stage: "a copy".to_owned() },
+            result => Error::Vulkan { call: "vkQueueSubmit2", result },
+        })
+    }
+
+    pub(crate) fn begin_commands(&self) -> Result<vk::CommandBuffer> {
+        let pool = lock(&self.pool);
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(*pool).level(vk::CommandBufferLevel::PRIMARY).command_buffer_count(1);
+        // SAFETY: the pool is locked and alive.
+        let commands = unsafe { self.device.allocate_command_buffers(&info) }.named("vkAllocateCommandBuffers")?[0];
+        let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the command buffer was just made.
+        unsafe { self.device.begin_command_buffer(commands, &begin) }.named("vkBeginCommandBuffer")?;
+        Ok(commands)
+    }
+
+    /// Ends, submits, waits and frees the command buffer.
+    pub(crate) fn run(&self, commands: vk::CommandBuffer) -> std::result::Result<(), vk::Result> {
+        let queue = lock(&self.queue);
+        let pool = lock(&self.pool);
+        // SAFETY: the command buffer is recording and comes from the pool; queue and pool are locked. It is freed only
+        // after the wait.
+        unsafe {
+            self.device.end_command_buffer(commands)?;
+            let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
+            let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
+            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&infos)];
+            let done = self.device.queue_submit2(*queue, &submits, fence).and_then(|()| self.device.wait_for_fences(&[fence], true, u64::MAX));
+            self.device.destroy_fence(fence, None);
+            if done.is_ok() {
+                self.device.free_command_buffers(*pool, &[commands]);
+            }
+            done
+        }
+    }
+}

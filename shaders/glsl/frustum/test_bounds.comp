@@ -1,0 +1,20 @@
+// frustum/test_bounds: which objects are outside the view volume? n/p-vertex test on world boxes (Zachmann, VFC; GPU Gems
+// 29.6.4), done in clip space so that perspective, parallel and oblique projections are one case. Twin: culling/src/frustum/twin.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "cull.glsl"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
+layout(set = 0, binding = 1, scalar) writeonly buffer Kept { uint items[]; } kept;
+layout(push_constant, scalar) uniform Push { CullView view; uint object_count; } push;
+
+void main() {
+    uint object = gl_GlobalInvocationID.x;
+    if (object >= push.object_count) return;
+    Bounds bound = bounds.items[object];
+    bool outside = false;
+    if ((bound.flags & OBJECT_ALWAYS_KEPT) == 0u)
+        outside = outside_frustum(clip_from_bounds(bound, push.view), footprint_widening(bound.flags, push.view));
+    kept.items[object] = outside ? 0u : 1u;
+}

@@ -1,0 +1,50 @@
+// hzb/test_bounds: which objects does the farthest-depth pyramid not hide? Those not drawn yet are drawn now; all of them
+// are drawn first in the next frame (Haar & Aaltonen 2015). Twin: culling/src/hzb/twin.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "footprint.glsl"
+#include "pyramid.glsl"
+
+layout(local_size_x = 64) in;
+// How many texels a footprint may touch in each direction before a coarser level is taken: more is tighter and slower.
+layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
+
+layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
+layout(set = 0, binding = 1, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
+layout(set = 0, binding = 2, scalar) readonly buffer Pyramid { float items[]; } pyramid;
+layout(set = 0, binding = 3, scalar) buffer Seen { uint items[]; } seen;
+layout(set = 0, binding = 4, scalar) writeonly buffer Newly { uint items[]; } newly;
+layout(push_constant, scalar) uniform Push { CullView view; uint object_count; uint coarsest_level; } push;
+
+// True if every texel that the footprint touches is nearer than the box can be.
+bool hidden_by_pyramid(Footprint footprint) {
+    uint level = 1u;
+    while (level < push.coarsest_level
+        && any(greaterThanEqual((footprint.last >> level) - (footprint.first >> level), uvec2(FOOTPRINT_TEXELS)))) level++;
+    PyramidLevel texels = levels.items[level];
+    uvec2 first = footprint.first >> level;
+    uvec2 last = footprint.last >> level;
+    for (uint y = first.y; y <= last.y; y++) {
+        for (uint x = first.x; x <= last.x; x++) {
+            if (footprint.nearest >= pyramid.items[texels.first + y * texels.width + x]) return false;
+        }
+    }
+    return true;
+}
+
+bool is_visible(Bounds bound) {
+    if ((bound.flags & OBJECT_ALWAYS_KEPT) != 0u) return true;
+    ClipBox box = clip_from_bounds(bound, push.view);
+    if (outside_frustum(box, footprint_widening(bound.flags, push.view))) return false;
+    Footprint footprint = footprint_of(box, push.view, bound.flags);
+    if (footprint.crosses_near) return true;
+    return !footprint.empty && !hidden_by_pyramid(footprint);
+}
+
+void main() {
+    uint object = gl_GlobalInvocationID.x;
+    if (object >= push.object_count) return;
+    bool visible = is_visible(bounds.items[object]);
+    newly.items[object] = visible && seen.items[object] == 0u ? 1u : 0u;
+    seen.items[object] = visible ? 1u : 0u;
+}

@@ -1,0 +1,56 @@
+// Where a box lies on the screen, in whole pixels, and how near it can be: both rounded outward.
+//
+// Derivation (rule 4 of DESIGN.md). For a corner with clip error e (cull.glsl) and w > e.w, the projected coordinate is off
+// by at most (e.x + |x/w| e.w) / (w - e.w), plus 4u |x/w| for the division and 4u of the picture's size for the viewport
+// transform. The device then snaps vertices to a grid of snap_px. A pixel is drawn only if its centre lies in the snapped
+// triangle, so only pixels whose centre lies in the box's rectangle grown by that much can be touched: a box that contains
+// no pixel centre draws nothing. Depth: z/w of anything in the box is at most the largest over its corners (a ratio of
+// affine functions takes its extremes there), rounded as above. Rasterisers evaluate the depth plane of the unsnapped
+// triangle at the centre, which may lie snap_px outside it: that adds the depth slope times snap_px, at most the box's
+// depth range times snap_px / h for a triangle h pixels high. DEPTH_SLACK covers h >= 1/8 pixel; thinner slivers are outside
+// the documented raster conditions.
+#ifndef FOOTPRINT_GLSL
+#define FOOTPRINT_GLSL
+#include "cull.glsl"
+
+const float DEPTH_SLACK_PER_SNAP = 8.0;
+const float ROUNDING = 4.0 / 16777216.0;
+
+struct Footprint {
+    bool crosses_near;  // reaches in front of the near plane or behind the eye: nothing else is valid
+    bool empty;         // covers no pixel centre
+    uvec2 first;        // first and last pixel, within the picture
+    uvec2 last;
+    float nearest;      // depth that nothing in the box exceeds
+};
+
+Footprint footprint_of(ClipBox box, CullView view, uint flags) {
+    Footprint result;
+    result.crosses_near = farthest_along(box, vec4(0.0, 0.0, 1.0, -1.0)) > 0.0 || farthest_along(box, vec4(0.0, 0.0, 0.0, -1.0)) >= 0.0;
+    vec2 low = vec2(3.0e38);
+    vec2 high = vec2(-3.0e38);
+    float nearest = 0.0;
+    float farthest = 1.0;
+    for (uint corner = 0u; corner < 8u; corner++) {
+        vec4 clip = box.centre + ((corner & 1u) != 0u ? box.axis_x : -box.axis_x)
+            + ((corner & 2u) != 0u ? box.axis_y : -box.axis_y) + ((corner & 4u) != 0u ? box.axis_z : -box.axis_z);
+        float w_low = clip.w - box.error.w;
+        vec2 projected = clip.xy / clip.w;
+        vec2 slack = (box.error.xy + abs(projected) * box.error.w) / w_low + ROUNDING * abs(projected);
+        low = min(low, projected - slack);
+        high = max(high, projected + slack);
+        nearest = max(nearest, (clip.z + box.error.z) / w_low * (1.0 + ROUNDING));
+        farthest = min(farthest, clip.z / clip.w);
+    }
+    vec2 size = vec2(view.width_px, view.height_px);
+    float grow = view.snap_px + ((flags & OBJECT_WIDE_RASTER) != 0u ? 1.0 : 0.0);
+    vec2 pad = vec2(grow) + ROUNDING * size;
+    vec2 first = ceil((low * 0.5 + 0.5) * size - pad - 0.5);
+    vec2 last = floor((high * 0.5 + 0.5) * size + pad - 0.5);
+    result.empty = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size));
+    result.first = uvec2(clamp(first, vec2(0.0), size - 1.0));
+    result.last = uvec2(clamp(last, vec2(0.0), size - 1.0));
+    result.nearest = min(nearest + (nearest - min(farthest, nearest)) * DEPTH_SLACK_PER_SNAP * view.snap_px, 1.0);
+    return result;
+}
+#endif

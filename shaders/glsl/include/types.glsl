@@ -1,0 +1,84 @@
+// Structs that more than one stage reads, and the constants that GLSL and Rust share. Scalar layout everywhere.
+#ifndef TYPES_GLSL
+#define TYPES_GLSL
+#extension GL_EXT_scalar_block_layout : require
+
+// Objects whose raster footprint is wider than their geometry: lines and points cover a pixel around them.
+const uint OBJECT_WIDE_RASTER = 1u;
+// Moves: its transform and bounds are written again each frame.
+const uint OBJECT_DYNAMIC = 2u;
+// Bounds without a meaning (NaN, infinite): never tested, always kept.
+const uint OBJECT_ALWAYS_KEPT = 4u;
+
+// How many visibility flags one invocation of the packing stages walks.
+const uint PACK_CHUNK = 64u;
+
+// No object: the item buffer where nothing was drawn.
+const uint ITEM_NONE = 0xffffffffu;
+
+// One mesh primitive in the world. The translation is split in two floats (origin_high + origin_low), so that the
+// difference to the camera keeps about 48 bits: nothing shakes 10^6 m from the origin.
+struct Object {
+    vec3 column_x;      // linear part of world-from-object
+    vec3 column_y;
+    vec3 column_z;
+    vec3 origin_high;
+    vec3 origin_low;
+    uint colour;        // RGBA8, linear, red in the lowest byte
+};
+
+// World bounds of an object: a box rounded outward on the host by the error of transforming its vertices on the GPU.
+struct Bounds {
+    vec3 centre_high;
+    vec3 centre_low;
+    vec3 half_extent;
+    uint flags;         // OBJECT_*
+};
+
+// Where a mesh lies in the shared index and vertex buffers.
+struct MeshRange {
+    uint first_index;
+    uint index_count;
+    int vertex_offset;
+};
+
+// A moving object's place this frame.
+struct MovedObject {
+    uint index;
+    Object object;
+    Bounds bounds;
+};
+
+// VkDrawIndexedIndirectCommand. first_instance is the object's index.
+struct DrawCommand {
+    uint index_count;
+    uint instance_count;
+    uint first_index;
+    int vertex_offset;
+    uint first_instance;
+};
+
+// What one frame looks through. Positions that the matrix takes are relative to the camera and unrotated.
+struct View {
+    mat4 clip_from_relative;
+    vec3 camera_high;
+    vec3 camera_low;
+};
+
+// A view as bounds tests need it: the matrix, the target's size and how exactly the device snaps vertices.
+struct CullView {
+    mat4 clip_from_relative;
+    vec3 camera_high;
+    vec3 camera_low;
+    uint width_px;
+    uint height_px;
+    float snap_px;      // the device rounds vertex positions to this grid, pixels
+};
+
+// Where a level of the farthest-depth pyramid lies in its buffer.
+struct PyramidLevel {
+    uint first;
+    uint width;
+    uint height;
+};
+#endif
