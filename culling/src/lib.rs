@@ -1,1 +1,26 @@
-//! x
+//! Occlusion culling methods, one folder a family, each frame readable as its paper's algorithm.
+//!
+//! A [`Method`] records a frame that draws what may be visible of a [`World`] as seen through a [`View`]. Methods are listed
+//! in [`METHODS`]; adding one is a folder, a line in that list and a test file (see `culling/README.md`).
+
+mod error;
+pub mod frustum;
+pub mod hzb;
+mod method;
+mod methods;
+pub mod none;
+mod options;
+pub mod pack;
+pub mod reference;
+pub mod world;
+
+pub use error::Error;
+pub use method::{Guarantee, Method, Setup};
+pub use methods::{find, Entry, METHODS};
+pub use options::{OptionInfo, Options};
+pub use pack::DrawList;
+pub use reference::VisibleSets;
+pub use world::{drawn_objects, Drawn, View, World};
+
+/// What culling calls return.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -233,11 +233,11 @@ impl Gpu {
     /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
     pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
         match bound {
-            Bound::Buffer { raw, offset: 0, size, .. } => {
-                let bytes = self.stage_from_buffer(ash::vk::Handle::from_raw(*raw), *size as usize)?;
+            Bound::Buffer { raw, offset, size, .. } => {
+                let bytes = self.stage_from_buffer(ash::vk::Handle::from_raw(*raw), *offset, *size as usize)?;
                 Ok(bytemuck::pod_collect_to_vec(&bytes[..bytes.len() / size_of::<T>() * size_of::<T>()]))
             }
-            _ => Ok(Vec::new()),
+            Bound::Image(_) => Ok(Vec::new()),
         }
     }
 }

@@ -93,7 +93,7 @@ impl<T: Pod> Buffer<T> {
             let bytes = &mapped[..self.len * size_of::<T>()];
             return Ok(bytemuck::pod_collect_to_vec(bytes));
         }
-        let bytes = self.gpu.stage_from_buffer(self.raw, self.len * size_of::<T>())?;
+        let bytes = self.gpu.stage_from_buffer(self.raw, 0, self.len * size_of::<T>())?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 

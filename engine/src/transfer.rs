@@ -66,13 +66,13 @@ impl Gpu {
         Ok(())
     }
 
-    pub(crate) fn stage_from_buffer(&self, from: vk::Buffer, bytes: usize) -> Result<Vec<u8>> {
+    pub(crate) fn stage_from_buffer(&self, from: vk::Buffer, src_offset: u64, bytes: usize) -> Result<Vec<u8>> {
         if bytes == 0 {
             return Ok(Vec::new());
         }
         let vulkan = self.vulkan()?;
         let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
-        let (to, region) = (staging.raw, vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes as u64 });
+        let (to, region) = (staging.raw, vk::BufferCopy { src_offset, dst_offset: 0, size: bytes as u64 });
         // SAFETY: as above.
         vulkan.run_once(|device, commands| unsafe { device.cmd_copy_buffer(commands, from, to, &[region]) })?;
         Ok(staging.bytes()?[..bytes].to_vec())

@@ -3,11 +3,24 @@
 //! Nothing here knows Vulkan. A [`Scene`] is plain data in `f64` world space; the `culling` crate uploads it.
 
 pub mod animation;
+mod bounds;
 mod camera;
+mod check;
 mod error;
+mod gltf;
+mod hash;
 mod model;
+mod open;
+mod path;
+pub mod procedural;
 
 pub use animation::Motion;
+pub use bounds::WorldBounds;
 pub use camera::{Camera, Pose, Projection};
+pub use check::MOST_OBJECTS;
 pub use error::SceneError;
-pub use model::{Aabb, Mesh, Object, Scene, Topology};
+pub use gltf::{import, import_bytes};
+pub use model::{Aabb, Mesh, Object, Scene, Topology, Walk};
+pub use open::open;
+pub use path::{record, CameraPath, PathKind, Shot};
+pub use procedural::SceneOptions;

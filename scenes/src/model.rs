@@ -72,4 +72,17 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// How dynamic objects move.
     pub motion: Motion,
+    /// Where one can walk, if the generator knows.
+    pub walk: Option<Walk>,
+}
+
+/// A way along the ground that meets no obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Walk {
+    /// Eye positions in the world, in metres. If the last equals the first, the way is a loop.
+    pub points: Vec<DVec3>,
+    /// How far a path of speed 1 goes, in metres, > 0.
+    pub length: f64,
+    /// How far the eye can leave the way to either side, in metres.
+    pub clearance: f64,
 }

@@ -31,6 +31,14 @@ impl<T> Clone for BufferRef<T> {
 
 impl<T> Copy for BufferRef<T> {}
 
+impl<T> BufferRef<T> {
+    /// The part of the range from element `first` on. `first` is less than the range's elements.
+    pub fn from(self, first: usize) -> Self {
+        let skipped = (first * size_of::<T>()) as u64;
+        BufferRef { offset: self.offset + skipped, size: self.size - skipped, ..self }
+    }
+}
+
 /// An image as a stage binds it: one view, always in the general layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageRef {

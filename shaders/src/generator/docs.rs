@@ -109,12 +109,10 @@ impl Reader {
                 }
             }
         } else if let Some(block) = opened_block(code) {
+            self.keep(block, comment.clone());
             match code.split_once('}') {
                 Some((_, instance)) => self.keep(instance.trim_end_matches(';').trim(), comment),
-                None => {
-                    self.keep(block, comment.clone());
-                    self.inside = Some((block.to_owned(), comment));
-                }
+                None => self.inside = Some((block.to_owned(), comment)),
             }
         } else if code.starts_with("layout") || code.starts_with("const ") {
             for name in declared(code) {

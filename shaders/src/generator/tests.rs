@@ -92,6 +92,7 @@ fn unused_bindings_are_read_with_their_access() {
 fn specialization_constants_keep_their_defaults() {
     let read = compute(
         "layout(constant_id = 2) const float SCALE = 0.5;
+         struct Pair { uint a, b; };  // on one line\n\
          layout(constant_id = 0) const bool LATE = true;
          layout(constant_id = 1) const int STEP = -3;
          layout(constant_id = 3) const uint LANES = 8u;
@@ -202,6 +203,7 @@ fn comments_reach_what_they_describe() {
         "// a box [m]\nstruct Bounds {\n    vec3 low;   // smallest corner\n    // bits\n    uint flags;\n};\n\n\
          // unrelated\n\nlayout(set = 0, binding = 0) buffer All { Bounds items[]; } bounds;  // of every object\n\
          layout(push_constant) uniform Push {\n    float near_m;  // from the eye\n} push;\n\
+         struct Pair { uint a, b; };  // on one line\n\
          layout(constant_id = 0) const bool LATE = false;  // second phase\n",
     );
     assert_eq!(docs.of("Bounds", "Bounds"), ["A box \\[m\\]"]);
@@ -210,6 +212,7 @@ fn comments_reach_what_they_describe() {
     assert_eq!(docs.of("bounds", "bounds"), ["Of every object."]);
     assert_eq!(docs.of("Push.near_m", "near_m"), ["From the eye."]);
     assert_eq!(docs.of("LATE", "LATE"), ["Second phase."]);
+    assert_eq!(docs.of("Pair", "Pair"), ["On one line."]);
     assert_eq!(docs.of("other", "other"), ["`other` in GLSL."]);
     assert_eq!(head("// a/b: what\n// more\n#version 460\n", "a/b").unwrap(), ["What", "more."]);
     assert_refused(head("// b/a: what\n", "a/b"), "begin with a comment `// a/b:");

@@ -1,0 +1,54 @@
+//! `frustum`: view-frustum culling of world boxes on the GPU (Zachmann, VFC; GPU Gems 29.6.4).
+
+pub mod twin;
+
+use crate::pack::DrawList;
+use crate::world::Still;
+use crate::{Method, OptionInfo, Result, Setup, View, World};
+use engine::{Buffer, Frame, Placement, Target};
+use shaders::frustum;
+
+/// `skip`: leave out what cannot change the result.
+pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION];
+
+struct Frustum {
+    kept: Buffer<u32>,
+    list: DrawList,
+    still: Still,
+}
+
+/// Makes the method.
+pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    Ok(Box::new(Frustum {
+        kept: Buffer::new(setup.gpu, "frustum.kept", setup.world.len(), Placement::Storage)?,
+        list: DrawList::new(setup.gpu, "frustum.list", setup.world)?,
+        still: Still::new(setup.options),
+    }))
+}
+
+impl Method for Frustum {
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        world.update(f);
+        f.clear(target);
+        if self.still.holds(world, view) {
+            f.skip("frustum/test_bounds", Still::REASON);
+            self.list.skip_packing(f, Still::REASON);
+        } else {
+            let test = frustum::TestBounds {
+                bounds: world.bounds(),
+                kept: self.kept.all(),
+                view: view.cull(),
+                object_count: world.len() as u32,
+            };
+            f.dispatch(test, world.len() as u32); // 1. which objects are outside
+            self.list.pack(f, world, self.kept.all()); // 2. the others, in object order
+        }
+        world.draw(f, &self.list, view, target); // 3. draw them
+        Ok(())
+    }
+
+    fn forget(&mut self) -> Result<()> {
+        self.still.forget();
+        Ok(())
+    }
+}

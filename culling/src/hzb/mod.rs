@@ -1,0 +1,103 @@
+//! `hzb`: two-phase hierarchical-Z culling (Haar & Aaltonen 2015, "GPU-Driven Rendering Pipelines"), the baseline that
+//! engines ship today. What the last frame saw is drawn first; its depth hides most of the rest.
+
+mod pyramid;
+pub mod twin;
+
+pub use pyramid::Pyramid;
+
+use crate::pack::DrawList;
+use crate::world::Still;
+use crate::{Method, OptionInfo, Result, Setup, View, World};
+use engine::{Buffer, Frame, Gpu, Placement, Target};
+use shaders::{hzb, Stage};
+
+/// `skip`, and `texels`: how many texels a footprint may touch in each direction before a coarser level is taken.
+pub const OPTIONS: &[OptionInfo] = &[
+    crate::world::SKIP_OPTION,
+    OptionInfo {
+        name: "texels",
+        default: "4",
+        values: "2..=16",
+        help: "pyramid texels a footprint may touch in each direction: more is tighter and slower",
+    },
+];
+
+struct Hzb {
+    gpu: Gpu,
+    seen: Buffer<u32>,
+    newly: Buffer<u32>,
+    early: DrawList,
+    late: DrawList,
+    pyramid: Option<Pyramid>,
+    texels: u32,
+    still: Still,
+}
+
+/// Makes the method.
+pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    let (gpu, world) = (setup.gpu, setup.world);
+    Ok(Box::new(Hzb {
+        gpu: gpu.clone(),
+        seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
+        newly: Buffer::new(gpu, "hzb.newly", world.len(), Placement::Storage)?,
+        early: DrawList::new(gpu, "hzb.early", world)?,
+        late: DrawList::new(gpu, "hzb.late", world)?,
+        pyramid: None,
+        texels: setup.options.number("texels"),
+        still: Still::new(setup.options),
+    }))
+}
+
+impl Method for Hzb {
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size)?;
+        let still = self.still.holds(world, view);
+        world.update(f);
+        f.clear(target);
+
+        f.part("early");
+        if still {
+            self.early.skip_packing(f, Still::REASON);
+        } else {
+            self.early.pack(f, world, self.seen.all()); // 1. what the last frame saw, in object order
+        }
+        world.draw(f, &self.early, view, target); // 2. draw it
+
+        f.part("");
+        if still {
+            Pyramid::skip(f, Still::REASON);
+            f.skip(hzb::TestBounds::INFO.name, Still::REASON);
+        } else {
+            pyramid.reduce(f, target); // 3. farthest depth per tile
+            let test = hzb::TestBounds {
+                bounds: world.bounds(),
+                levels: pyramid.levels(),
+                pyramid: pyramid.texels(),
+                seen: self.seen.all(),
+                newly: self.newly.all(),
+                view: view.cull(),
+                object_count: world.len() as u32,
+                coarsest_level: pyramid.coarsest_level(),
+                constants: hzb::TestBoundsConstants { footprint_texels: self.texels },
+            };
+            f.dispatch(test, world.len() as u32); // 4. test all objects
+        }
+
+        f.part("late");
+        if still {
+            self.late.skip_packing(f, Still::REASON);
+        } else {
+            self.late.pack(f, world, self.newly.all()); // 5. what has come into view
+        }
+        world.draw(f, &self.late, view, target); // 6. draw it
+        f.part("");
+        Ok(())
+    }
+
+    fn forget(&mut self) -> Result<()> {
+        self.still.forget();
+        self.seen.write(&vec![0; self.seen.len()])?;
+        Ok(())
+    }
+}

@@ -1,0 +1,103 @@
+//! The farthest-depth pyramid on the GPU, right at every size.
+
+use crate::Result;
+use engine::{Buffer, Frame, Gpu, Placement, Target};
+use shaders::types::{PyramidLevel, REDUCED_LEVELS};
+use shaders::{hzb, BufferRef, Stage};
+
+/// Farthest depths by level, from level 1 (2x2 pixels a texel) to the one that has a single texel.
+pub struct Pyramid {
+    size: [u32; 2],
+    layout: Vec<PyramidLevel>,
+    levels: Buffer<PyramidLevel>,
+    texels: Buffer<f32>,
+    coarsest: u32,
+}
+
+/// Where each level of a pyramid lies, by level (level 0, the depth buffer itself, is empty), and its coarsest level.
+/// There are whole reductions of levels; those past the coarsest have one texel each.
+pub fn layout(size: [u32; 2]) -> (Vec<PyramidLevel>, u32) {
+    let coarsest = (1..32u32).find(|level| size.iter().all(|side| side.div_ceil(1 << level) == 1)).unwrap_or(31);
+    let mut levels = vec![PyramidLevel { first: 0, width: 0, height: 0 }];
+    let mut first = 0;
+    for level in 1..=coarsest.next_multiple_of(REDUCED_LEVELS) {
+        let [width, height] = size.map(|side| side.div_ceil(1 << level));
+        levels.push(PyramidLevel { first, width, height });
+        first += width * height;
+    }
+    (levels, coarsest)
+}
+
+impl Pyramid {
+    /// A pyramid for pictures of `size` pixels.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self> {
+        let (layout, coarsest) = layout(size);
+        let texels = layout.iter().map(|level| level.width * level.height).sum::<u32>();
+        Ok(Pyramid {
+            size,
+            levels: Buffer::with_data(gpu, "pyramid.levels", &layout, Placement::Storage)?,
+            texels: Buffer::new(gpu, "pyramid.texels", texels as usize, Placement::Storage)?,
+            layout,
+            coarsest,
+        })
+    }
+
+    /// The pyramid in `slot` if it has the size asked for, otherwise a new one.
+    pub fn sized<'a>(slot: &'a mut Option<Pyramid>, gpu: &Gpu, size: [u32; 2]) -> Result<&'a Pyramid> {
+        let fitting = slot.take().filter(|pyramid| pyramid.size == size);
+        Ok(slot.insert(match fitting {
+            Some(pyramid) => pyramid,
+            None => Pyramid::new(gpu, size)?,
+        }))
+    }
+
+    /// Reduces the target's depth, three levels a dispatch.
+    pub fn reduce(&self, f: &mut Frame, target: &Target) {
+        let tiles_at = |level: u32| {
+            let PyramidLevel { width, height, .. } = self.layout[level as usize];
+            [width, height]
+        };
+        let tiles = tiles_at(REDUCED_LEVELS);
+        let first = hzb::ReduceDepth {
+            depth: target.depth,
+            levels: self.levels.all(),
+            pyramid: self.texels.all(),
+            size_px: self.size,
+            tiles,
+        };
+        f.dispatch(first, tiles[0] * tiles[1]);
+        let mut source_level = REDUCED_LEVELS;
+        while source_level < self.coarsest {
+            let tiles = tiles_at(source_level + REDUCED_LEVELS);
+            let next = hzb::ReduceLevels { levels: self.levels.all(), pyramid: self.texels.all(), source_level, tiles };
+            f.dispatch(next, tiles[0] * tiles[1]);
+            source_level += REDUCED_LEVELS;
+        }
+    }
+
+    /// Notes that the pyramid is not needed.
+    pub fn skip(f: &mut Frame, reason: &'static str) {
+        f.skip(hzb::ReduceDepth::INFO.name, reason);
+        f.skip(hzb::ReduceLevels::INFO.name, reason);
+    }
+
+    /// Where the levels lie.
+    pub fn levels(&self) -> BufferRef<PyramidLevel> {
+        self.levels.all()
+    }
+
+    /// All texels.
+    pub fn texels(&self) -> BufferRef<f32> {
+        self.texels.all()
+    }
+
+    /// The level that has a single texel.
+    pub fn coarsest_level(&self) -> u32 {
+        self.coarsest
+    }
+
+    /// All texels, read back; for tests.
+    pub fn read(&self) -> Result<Vec<f32>> {
+        Ok(self.texels.read()?)
+    }
+}

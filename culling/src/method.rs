@@ -1,0 +1,52 @@
+//! What a culling method is.
+
+use crate::{Options, Result, View, VisibleSets, World};
+use engine::{Frame, Gpu, Target};
+use std::sync::Arc;
+
+/// What a method promises. Tests hold it to that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guarantee {
+    /// Every object that owns a pixel is drawn, in every frame, whatever the scene, up to the documented raster conditions.
+    Exact,
+    /// Objects may be missed, for this reason.
+    Approximate(&'static str),
+}
+
+impl std::fmt::Display for Guarantee {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Guarantee::Exact => out.write_str("exact"),
+            Guarantee::Approximate(why) => write!(out, "approximate: {why}"),
+        }
+    }
+}
+
+/// What a method is made from.
+pub struct Setup<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// The scene on it.
+    pub world: &'a World,
+    /// The method's options.
+    pub options: &'a Options,
+    /// The true visible set of each frame, where the run has it.
+    pub visible: Option<Arc<VisibleSets>>,
+}
+
+/// A culling method: it records frames.
+pub trait Method {
+    /// Readies what belongs to the run and not to the method (`ref`'s visible set). Never timed.
+    fn prepare(&mut self, _world: &World, _view: &View) -> Result<()> {
+        Ok(())
+    }
+
+    /// Records one frame that clears the target and draws what may be visible. Every decision comes from the world, the view
+    /// and earlier frames, never from what the target has bound.
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()>;
+
+    /// Forgets earlier frames: after a camera cut, or when a run starts again from its first frame.
+    fn forget(&mut self) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! The list of methods. One line a method.
+
+use crate::{frustum, hzb, none, reference, Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
+
+/// A method that can be chosen.
+pub struct Entry {
+    /// Its name on the command line and in results.
+    pub id: &'static str,
+    /// What it is, in one line.
+    pub title: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What it promises.
+    pub guarantee: Guarantee,
+    /// Its options.
+    pub options: &'static [OptionInfo],
+    /// Makes it.
+    pub make: fn(&Setup<'_>) -> Result<Box<dyn Method>>,
+}
+
+/// Every method, in the order in which `--method all` runs them.
+pub const METHODS: &[Entry] = &[
+    Entry { id: "none", title: "no culling", source: "baseline of all papers", guarantee: Guarantee::Exact, options: none::OPTIONS, make: none::make },
+    Entry { id: "frustum", title: "view-frustum culling", source: "Zachmann 2008, VFC; GPU Gems 29.6.4; Kim 2015, III.2", guarantee: Guarantee::Exact, options: frustum::OPTIONS, make: frustum::make },
+    Entry { id: "hzb", title: "two-phase hierarchical-Z culling", source: "Haar & Aaltonen 2015; Lee et al. 2018, 5.1", guarantee: Guarantee::Exact, options: hzb::OPTIONS, make: hzb::make },
+    Entry { id: "ref", title: "ideal culling: draws the true visible set", source: "Kim 2015, V; Lee et al. 2018, 5.3; EOVC, IV", guarantee: Guarantee::Exact, options: reference::OPTIONS, make: reference::make },
+];
+
+/// The method of that name.
+pub fn find(name: &str) -> Result<&'static Entry> {
+    METHODS.iter().find(|entry| entry.id == name).ok_or_else(|| Error::UnknownMethod {
+        name: name.to_owned(),
+        choices: METHODS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
+    })
+}
+
+impl Entry {
+    /// The method's options, all at their defaults.
+    pub fn default_options(&self) -> Options {
+        Options::new(self.id, self.options)
+    }
+}

@@ -1,0 +1,34 @@
+//! The packing stages in plain Rust: their definition.
+
+use shaders::types::{DrawCommand, MeshRange, PACK_CHUNK};
+
+/// How many flags of each chunk are set. Twin of `pack/count_flags`.
+pub fn count_flags(flags: &[u32]) -> Vec<u32> {
+    flags.chunks(PACK_CHUNK as usize).map(|chunk| chunk.iter().filter(|flag| **flag != 0).count() as u32).collect()
+}
+
+/// Where each chunk's first command goes, and how many commands there are. Twin of `pack/scan_counts`.
+pub fn scan_counts(counts: &[u32]) -> (Vec<u32>, u32) {
+    let mut total = 0;
+    let mut starts = Vec::with_capacity(counts.len());
+    for count in counts {
+        starts.push(total);
+        total += count;
+    }
+    (starts, total)
+}
+
+/// One command for each flagged object, in object order. Twin of `pack/write_commands`.
+pub fn write_commands(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]) -> Vec<DrawCommand> {
+    let command = |object: usize| {
+        let mesh = meshes[object_meshes[object] as usize];
+        DrawCommand {
+            index_count: mesh.index_count,
+            instance_count: 1,
+            first_index: mesh.first_index,
+            vertex_offset: mesh.vertex_offset,
+            first_instance: object as u32,
+        }
+    };
+    (0..flags.len()).filter(|object| flags[*object] != 0).map(command).collect()
+}

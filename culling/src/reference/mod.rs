@@ -1,0 +1,77 @@
+//! `ref`: ideal culling. Draws exactly the objects that own a pixel of this frame: the physical limit of every table.
+
+mod cache;
+mod sets;
+
+pub use cache::{load, save};
+pub use sets::VisibleSets;
+
+use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
+use engine::{Buffer, Frame, IndexedIndirect, Placement, Target};
+use shaders::types::DrawCommand;
+use std::sync::Arc;
+
+/// No options.
+pub const OPTIONS: &[OptionInfo] = &[];
+
+struct Reference {
+    visible: Arc<VisibleSets>,
+    all: Vec<DrawCommand>,
+    commands: Buffer<DrawCommand>,
+    counts: Vec<Buffer<u32>>,
+}
+
+/// Makes the method.
+///
+/// # Errors
+/// A run without visible sets.
+pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    let needs = || "the visible sets of the run's frames; make them with a truth pass first".to_owned();
+    let visible = setup.visible.clone().ok_or_else(|| Error::Missing { method: "ref", needs: needs() })?;
+    let count = |index: usize| Buffer::new(setup.gpu, &format!("ref.total{index}"), 1, Placement::Upload);
+    Ok(Box::new(Reference {
+        visible,
+        all: setup.world.read_all_commands()?,
+        commands: Buffer::new(setup.gpu, "ref.commands", setup.world.len(), Placement::Upload)?,
+        counts: (0..setup.world.ranges().len()).map(count).collect::<std::result::Result<_, _>>()?,
+    }))
+}
+
+impl Method for Reference {
+    /// Writes the commands of the visible set: known beforehand, so not part of the frame.
+    fn prepare(&mut self, world: &World, view: &View) -> Result<()> {
+        let Some(visible) = self.visible.frame(view.frame) else {
+            let needs = format!("the visible set of frame {}, but the run's sets have {} frames", view.frame, self.visible.len());
+            return Err(Error::Missing { method: "ref", needs });
+        };
+        let mut commands = vec![DrawCommand::default(); world.len()];
+        for (range, total) in world.ranges().iter().zip(&mut self.counts) {
+            let objects = range.first as usize..(range.first + range.count) as usize;
+            let mut count = 0;
+            for object in objects.filter(|object| visible.contains(*object)) {
+                commands[range.first as usize + count] = self.all[object];
+                count += 1;
+            }
+            total.write(&[count as u32])?;
+        }
+        self.commands.write(&commands)?;
+        Ok(())
+    }
+
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        world.update(f);
+        f.clear(target);
+        for (range, total) in world.ranges().iter().zip(&self.counts) {
+            let draw = IndexedIndirect {
+                vertices: world.vertices().into(),
+                indices: world.indices().into(),
+                commands: self.commands.all().from(range.first as usize).into(),
+                count: Some(total.all()),
+                max_draws: range.count,
+                primitives: range.primitives,
+            };
+            world.draw_indirect(f, draw, view, target);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,250 @@
+//! A scene on the GPU: vertices, indices, objects, bounds, and what moves them.
+
+mod drawn;
+mod still;
+pub mod twin;
+mod upload;
+mod view;
+
+pub use drawn::{drawn_objects, Drawn};
+pub use still::{Still, SKIP_OPTION};
+pub use view::{split, View};
+
+use crate::pack::DrawList;
+use crate::Result;
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
+use glam::DAffine3;
+use scenes::{Scene, WorldBounds};
+use shaders::draw::ObjectsVertex;
+use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
+use shaders::{draw, world, BufferRef, Stage};
+
+/// Objects that lie side by side and are drawn with the same kind of primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Range {
+    /// First object.
+    pub first: u32,
+    /// Objects, > 0.
+    pub count: u32,
+    /// Their primitives.
+    pub primitives: Primitives,
+}
+
+/// A scene on the GPU. Objects keep the scene's order, except that triangles come before lines and lines before points.
+pub struct World {
+    vertices: Buffer<ObjectsVertex>,
+    indices: Buffer<u32>,
+    meshes: Buffer<MeshRange>,
+    objects: Buffer<Object>,
+    bounds: Buffer<Bounds>,
+    object_meshes: Buffer<u32>,
+    all_commands: Buffer<DrawCommand>,
+    moves: Option<Buffer<MovedObject>>,
+    ranges: Vec<Range>,
+    host: Host,
+}
+
+/// What the host keeps of the scene.
+struct Host {
+    scene_object: Vec<u32>,
+    object_of_scene: Vec<u32>,
+    bounds: WorldBounds,
+    object_meshes: Vec<u32>,
+    static_objects: Vec<Object>,
+    flags: Vec<u32>,
+    transforms: Vec<(u32, DAffine3)>,
+    move_count: u32,
+    seconds: Option<f64>,
+    revision: u64,
+    triangles: u64,
+}
+
+impl World {
+    /// Uploads a scene at time 0.
+    ///
+    /// # Errors
+    /// A scene that is broken or too large, or a device without room for it.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self> {
+        scene.check()?;
+        let flat = upload::flatten(scene);
+        let storage = Placement::Storage;
+        let moving = scene.motion.dynamic_objects().len();
+        let moves = if moving == 0 { None } else { Some(Buffer::new(gpu, "world.moves", moving, Placement::Upload)?) };
+        Ok(World {
+            vertices: Buffer::with_data(gpu, "world.vertices", &flat.vertices, Placement::Geometry)?,
+            indices: Buffer::with_data(gpu, "world.indices", &flat.indices, Placement::Geometry)?,
+            meshes: Buffer::with_data(gpu, "world.meshes", &flat.meshes, storage)?,
+            objects: Buffer::with_data(gpu, "world.objects", &flat.objects, storage)?,
+            bounds: Buffer::with_data(gpu, "world.bounds", &flat.bounds, storage)?,
+            object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
+            all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
+            moves,
+            ranges: flat.ranges,
+            host: Host {
+                object_of_scene: upload::inverse(&flat.scene_object),
+                scene_object: flat.scene_object,
+                bounds: flat.world_bounds,
+                object_meshes: flat.object_meshes,
+                flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
+                static_objects: if moving == 0 { Vec::new() } else { flat.objects },
+                transforms: Vec::new(),
+                move_count: 0,
+                seconds: None,
+                revision: 0,
+                triangles: scene.triangles(),
+            },
+        })
+    }
+
+    /// Objects.
+    pub fn len(&self) -> usize {
+        self.host.scene_object.len()
+    }
+
+    /// True if there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Triangles of all objects, instances counted apart.
+    pub fn triangles(&self) -> u64 {
+        self.host.triangles
+    }
+
+    /// The scene's object behind each of the world's, which differ where lines and points are mixed in.
+    pub fn scene_object(&self, object: usize) -> usize {
+        self.host.scene_object[object] as usize
+    }
+
+    /// Changes whenever an object moves: equal revisions mean equal objects.
+    pub fn revision(&self) -> u64 {
+        self.host.revision
+    }
+
+    /// Puts moving objects where they are at a time in the scene; the next frames upload it. Cheap if nothing moves.
+    pub fn set_time(&mut self, scene: &Scene, seconds: f64) -> Result<()> {
+        let Some(moves) = &mut self.moves else { return Ok(()) };
+        if self.host.seconds == Some(seconds) {
+            return Ok(());
+        }
+        let host = &mut self.host;
+        scene.motion.transforms_at(seconds, &mut host.transforms);
+        let moved: Vec<MovedObject> = host
+            .transforms
+            .iter()
+            .map(|(scene_object, transform)| {
+                let index = host.object_of_scene[*scene_object as usize];
+                let mesh = host.object_meshes[index as usize];
+                let still = host.static_objects[index as usize];
+                let object = Object { colour: still.colour, ..upload::object(transform, still.colour) };
+                let bounds = upload::bounds(&host.bounds.of(mesh, transform), transform, host.flags[index as usize]);
+                MovedObject { index, object, bounds }
+            })
+            .collect();
+        moves.write(&moved)?;
+        host.move_count = moved.len() as u32;
+        host.seconds = Some(seconds);
+        host.revision += 1;
+        Ok(())
+    }
+
+    /// First step of every frame: moving objects take their places.
+    pub fn update(&self, f: &mut Frame) {
+        let Some(moves) = &self.moves else {
+            f.skip(world::MoveObjects::INFO.name, "no dynamic objects");
+            return;
+        };
+        let stage = world::MoveObjects {
+            moves: moves.all(),
+            objects: self.objects.all(),
+            bounds: self.bounds.all(),
+            move_count: self.host.move_count,
+        };
+        f.dispatch(stage, self.host.move_count);
+    }
+
+    /// Draws what a list holds.
+    pub fn draw(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
+        for draw in list.draws(self) {
+            self.draw_indirect(f, draw, view, target);
+        }
+    }
+
+    /// Draws every object.
+    pub fn draw_all(&self, f: &mut Frame, view: &View, target: &Target) {
+        self.draw_commands(f, self.all_commands.all(), view, target);
+    }
+
+    /// Draws from a command for each object, in object order; a command of no instances draws nothing.
+    pub fn draw_commands(&self, f: &mut Frame, commands: BufferRef<DrawCommand>, view: &View, target: &Target) {
+        if self.is_empty() {
+            f.skip(draw::Objects::INFO.name, "no objects");
+        }
+        for range in &self.ranges {
+            let draw = IndexedIndirect {
+                vertices: self.vertices.all().into(),
+                indices: self.indices.all().into(),
+                commands: commands.from(range.first as usize).into(),
+                count: None,
+                max_draws: range.count,
+                primitives: range.primitives,
+            };
+            self.draw_indirect(f, draw, view, target);
+        }
+    }
+
+    pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+        let objects = self.objects.all();
+        // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
+        if matches!(target.colour, Some((_, engine::Format::Heat))) {
+            f.draw(draw::Overdraw { objects, view: view.gpu() }, draw, target);
+        } else {
+            f.draw(draw::Objects { objects, view: view.gpu() }, draw, target);
+        }
+    }
+
+    /// World bounds by object.
+    pub fn bounds(&self) -> BufferRef<Bounds> {
+        self.bounds.all()
+    }
+
+    /// Transforms and colours by object.
+    pub fn objects(&self) -> BufferRef<Object> {
+        self.objects.all()
+    }
+
+    /// The mesh of each object.
+    pub fn object_meshes(&self) -> BufferRef<u32> {
+        self.object_meshes.all()
+    }
+
+    /// Where each mesh lies.
+    pub fn meshes(&self) -> BufferRef<MeshRange> {
+        self.meshes.all()
+    }
+
+    /// Vertices of all meshes.
+    pub fn vertices(&self) -> BufferRef<ObjectsVertex> {
+        self.vertices.all()
+    }
+
+    /// Indices of all meshes, relative to each mesh's first vertex.
+    pub fn indices(&self) -> BufferRef<u32> {
+        self.indices.all()
+    }
+
+    /// Objects by kind of primitive.
+    pub fn ranges(&self) -> &[Range] {
+        &self.ranges
+    }
+
+    /// Bounds as they are on the GPU now; for tests.
+    pub fn read_bounds(&self) -> Result<Vec<Bounds>> {
+        Ok(self.bounds.read()?)
+    }
+
+    /// A command for every object; for tests and the ideal method.
+    pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
+        Ok(self.all_commands.read()?)
+    }
+}

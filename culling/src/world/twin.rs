@@ -1,0 +1,11 @@
+//! The world's stages in plain Rust: their definition.
+
+use shaders::types::{Bounds, MovedObject, Object};
+
+/// Puts each moved object in its place. Twin of `world/move_objects`.
+pub fn move_objects(moves: &[MovedObject], objects: &mut [Object], bounds: &mut [Bounds]) {
+    for moved in moves {
+        objects[moved.index as usize] = moved.object;
+        bounds[moved.index as usize] = moved.bounds;
+    }
+}

@@ -1,0 +1,117 @@
+//! One animated property: key times, values, and how to go from one to the next (glTF 2.0, appendix C).
+
+use glam::{DQuat, DVec3, DVec4};
+
+/// How a property goes from key to key.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Holds each value until the next key.
+    Step,
+    /// Straight lines; rotations along the shorter arc.
+    #[default]
+    Linear,
+    /// Hermite splines: each key has an in-tangent, a value and an out-tangent, in this order.
+    CubicSpline,
+}
+
+/// What a [`Track`] can animate.
+pub trait Interpolate: Copy {
+    /// Linear from `a` to `b`, `t` in 0..=1.
+    fn linear(a: Self, b: Self, t: f64) -> Self;
+    /// The sum of the four terms times their weights.
+    fn weighted(terms: [Self; 4], weights: [f64; 4]) -> Self;
+    /// All components are finite.
+    fn is_finite(self) -> bool;
+}
+
+impl Interpolate for DVec3 {
+    fn linear(a: Self, b: Self, t: f64) -> Self {
+        // Not a.lerp(b, t), whose rounding may miss b at t = 1.
+        a * (1.0 - t) + b * t
+    }
+    fn weighted(terms: [Self; 4], weights: [f64; 4]) -> Self {
+        terms.iter().zip(weights).map(|(&term, weight)| term * weight).sum()
+    }
+    fn is_finite(self) -> bool {
+        DVec3::is_finite(self)
+    }
+}
+
+impl Interpolate for DQuat {
+    fn linear(a: Self, b: Self, t: f64) -> Self {
+        a.slerp(b, t)
+    }
+    fn weighted(terms: [Self; 4], weights: [f64; 4]) -> Self {
+        let sum: DVec4 = terms.iter().zip(weights).map(|(&term, weight)| DVec4::from(term) * weight).sum();
+        DQuat::from_vec4(sum.try_normalize().unwrap_or(DVec4::W))
+    }
+    fn is_finite(self) -> bool {
+        DQuat::is_finite(self)
+    }
+}
+
+/// An animated property.
+#[derive(Clone, Debug)]
+pub struct Track<T> {
+    interpolation: Interpolation,
+    times: Vec<f64>,
+    values: Vec<T>,
+}
+
+impl<T: Interpolate> Track<T> {
+    /// A track with at least one key. `times` are seconds, ascending; `values` has one a key, or three for cubic splines.
+    ///
+    /// # Errors
+    /// What is wrong, as half a sentence: no keys, wrong counts, times that descend, or a number that is not finite.
+    pub fn new(interpolation: Interpolation, times: Vec<f64>, values: Vec<T>) -> Result<Self, String> {
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        if times.is_empty() {
+            return Err("it has no keys".into());
+        }
+        if times.len().checked_mul(each) != Some(values.len()) {
+            return Err(format!("{} keys need {each} values each, but there are {}", times.len(), values.len()));
+        }
+        if !times.iter().all(|time| time.is_finite()) || !values.iter().all(|value| value.is_finite()) {
+            return Err("a time or value is not a finite number".into());
+        }
+        if let Some(key) = (1..times.len()).find(|&key| times[key] < times[key - 1]) {
+            return Err(format!("the time of key {key} is before that of key {}", key - 1));
+        }
+        Ok(Track { interpolation, times, values })
+    }
+
+    /// Time of the first and the last key in seconds.
+    pub fn duration_s(&self) -> (f64, f64) {
+        (self.times[0], self.times[self.times.len() - 1])
+    }
+
+    /// The value at a time; the first or last key's outside their times.
+    pub fn at(&self, seconds: f64) -> T {
+        // The number of keys at or before the time. Not a number counts as before all.
+        let after = self.times.partition_point(|&time| time <= seconds);
+        if after == 0 {
+            return self.value(0);
+        }
+        let key = after - 1;
+        if after == self.times.len() || self.interpolation == Interpolation::Step {
+            return self.value(key);
+        }
+        let length = self.times[after] - self.times[key];
+        let t = (seconds - self.times[key]) / length;
+        if self.interpolation == Interpolation::Linear {
+            return T::linear(self.value(key), self.value(after), t);
+        }
+        let (t2, t3) = (t * t, t * t * t);
+        T::weighted(
+            [self.value(key), self.values[3 * key + 2], self.value(after), self.values[3 * after]],
+            [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, length * (t3 - t2)],
+        )
+    }
+
+    fn value(&self, key: usize) -> T {
+        match self.interpolation {
+            Interpolation::CubicSpline => self.values[3 * key + 1],
+            _ => self.values[key],
+        }
+    }
+}

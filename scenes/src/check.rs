@@ -1,0 +1,216 @@
+//! What a scene must be before it can be drawn, and how large it may be.
+
+use crate::animation::Motion;
+use crate::bounds::WorldBounds;
+use crate::error::SceneError;
+use crate::model::{Mesh, Object, Scene, Topology};
+
+/// Most objects that a scene may have: object indices are drawn into 24 bits of the item buffer's keys.
+pub const MOST_OBJECTS: usize = 1 << 24;
+
+impl Scene {
+    /// Refuses what has no meaning: transforms, vertices or bounds that are not finite or leave the range of `f32`, indices out of
+    /// range, and scenes too large to address. Flat, point-sized and reflected objects are legal.
+    ///
+    /// # Errors
+    /// [`SceneError::BadObject`] with the object's name, or [`SceneError::TooLarge`].
+    pub fn check(&self) -> Result<(), SceneError> {
+        self.check_sizes()?;
+        let faults: Vec<Option<String>> = self.meshes.iter().map(mesh_fault).collect();
+        let bounds = WorldBounds::new(self);
+        for object in &self.objects {
+            let fault = match faults.get(object.mesh as usize) {
+                None => {
+                    let meshes = self.meshes.len();
+                    Some(format!("it uses mesh {}, but the scene has {meshes}", object.mesh))
+                }
+                Some(Some(fault)) => Some(fault.clone()),
+                Some(None) => object_fault(object, &bounds),
+            };
+            if let Some(fault) = fault {
+                return Err(SceneError::BadObject { object: object.name.clone(), fault });
+            }
+        }
+        self.check_motion()
+    }
+
+    fn check_sizes(&self) -> Result<(), SceneError> {
+        let vertices: u64 = self.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum();
+        let indices: u64 = self.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum();
+        let totals = [
+            ("objects", self.objects.len() as u64, MOST_OBJECTS as u64),
+            ("vertices", vertices, u64::from(u32::MAX)),
+            ("indices", indices, u64::from(u32::MAX)),
+        ];
+        for (what, count, limit) in totals {
+            if count > limit {
+                let fault = format!("it has {count} {what}, more than the {limit} that can be addressed; try a smaller --scale");
+                return Err(SceneError::TooLarge { scene: self.name.clone(), fault });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_motion(&self) -> Result<(), SceneError> {
+        let stray = self.motion.dynamic_objects().into_iter().find(|&object| object as usize >= self.objects.len());
+        if let Some(stray) = stray {
+            let fault = format!("it is animated, but the scene has {} objects", self.objects.len());
+            return Err(SceneError::BadObject { object: format!("number {stray}"), fault });
+        }
+        let Motion::Orbits(orbits) = &self.motion else { return Ok(()) };
+        for orbit in orbits {
+            let numbers = [orbit.radians_per_s, orbit.bob_period_s];
+            let vectors = [orbit.centre, orbit.axis, orbit.bob];
+            let finite = orbit.base.is_finite()
+                && numbers.iter().all(|number| number.is_finite())
+                && vectors.iter().all(|vector| vector.is_finite());
+            if !finite {
+                let object = self.objects[orbit.object as usize].name.clone();
+                let fault = "a number of its motion is not finite".into();
+                return Err(SceneError::BadObject { object, fault });
+            }
+        }
+        Ok(())
+    }
+
+    /// Triangles drawn when every object is: each mesh counts once an object. Lines and points count none.
+    pub fn triangles(&self) -> u64 {
+        let of_mesh = |mesh: &Mesh| match mesh.topology {
+            Topology::Triangles => mesh.indices.len() as u64 / 3,
+            Topology::Lines | Topology::Points => 0,
+        };
+        self.objects.iter().filter_map(|object| self.meshes.get(object.mesh as usize)).map(of_mesh).sum()
+    }
+}
+
+fn mesh_fault(mesh: &Mesh) -> Option<String> {
+    let vertices = mesh.positions.len();
+    if let Some(vertex) = mesh.positions.iter().position(|position| !position.is_finite()) {
+        return Some(format!("vertex {vertex} of its mesh '{}' is not finite", mesh.name));
+    }
+    if let Some(vertex) = mesh.normals.iter().position(|normal| !normal.is_finite()) {
+        return Some(format!("normal {vertex} of its mesh '{}' is not finite", mesh.name));
+    }
+    if mesh.normals.len() != vertices {
+        let normals = mesh.normals.len();
+        return Some(format!("its mesh '{}' has {normals} normals for {vertices} vertices", mesh.name));
+    }
+    if let Some(index) = mesh.indices.iter().find(|&&index| index as usize >= vertices) {
+        return Some(format!("its mesh '{}' has index {index}, but {vertices} vertices", mesh.name));
+    }
+    let each = match mesh.topology {
+        Topology::Triangles => 3,
+        Topology::Lines => 2,
+        Topology::Points => 1,
+    };
+    let count = mesh.indices.len();
+    (count % each != 0).then(|| format!("its mesh '{}' has {count} indices, not a multiple of {each}", mesh.name))
+}
+
+fn object_fault(object: &Object, bounds: &WorldBounds) -> Option<String> {
+    if !object.world_from_object.is_finite() {
+        return Some("its transform is not finite; check its node and the nodes above it".into());
+    }
+    if !object.colour.iter().all(|part| part.is_finite()) {
+        return Some("its colour is not finite".into());
+    }
+    let most = f64::from(f32::MAX);
+    let linear_fits = object.world_from_object.matrix3.to_cols_array().iter().all(|part| part.abs() <= most);
+    let world = bounds.of(object.mesh, &object.world_from_object);
+    let fits = world.is_valid() && world.min.abs().max(world.max.abs()).max_element() <= most;
+    (!linear_fits || !fits).then(|| "its transform takes it beyond the range of 32-bit numbers; scale the scene down".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::Orbit;
+    use glam::{DAffine3, DMat3, DVec3, Vec3};
+
+    fn triangle() -> Scene {
+        let mesh = Mesh {
+            name: "triangle".into(),
+            topology: Topology::Triangles,
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            normals: vec![Vec3::Z; 3],
+            indices: vec![0, 1, 2],
+        };
+        let object = Object {
+            name: "kite".into(),
+            mesh: 0,
+            world_from_object: DAffine3::IDENTITY,
+            colour: [1.0; 4],
+            dynamic: false,
+            translucent: false,
+            masked: false,
+        };
+        Scene { name: "test".into(), meshes: vec![mesh], objects: vec![object], ..Scene::default() }
+    }
+
+    fn fault(change: impl FnOnce(&mut Scene)) -> String {
+        let mut scene = triangle();
+        change(&mut scene);
+        scene.check().expect_err("the change is a fault").to_string()
+    }
+
+    #[test]
+    fn a_plain_scene_is_good() {
+        let scene = triangle();
+        assert!(scene.check().is_ok());
+        assert_eq!(scene.triangles(), 1);
+        assert!(Scene::default().check().is_ok());
+    }
+
+    #[test]
+    fn flat_point_and_reflected_objects_are_legal() {
+        for scale in [DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DVec3::new(-1.0, 1.0, 1.0), DVec3::splat(1e-30)] {
+            let mut scene = triangle();
+            scene.objects[0].world_from_object.matrix3 = DMat3::from_diagonal(scale);
+            assert!(scene.check().is_ok(), "scale {scale}");
+        }
+    }
+
+    #[test]
+    fn faults_name_the_object() {
+        let faults = [
+            fault(|scene| scene.objects[0].world_from_object.translation.x = f64::NAN),
+            fault(|scene| scene.objects[0].world_from_object.matrix3.x_axis.y = f64::INFINITY),
+            fault(|scene| scene.objects[0].world_from_object.matrix3.x_axis.y = 1e60),
+            fault(|scene| scene.objects[0].world_from_object.translation.x = 1e60),
+            fault(|scene| scene.objects[0].mesh = 1),
+            fault(|scene| scene.objects[0].colour[2] = f32::NAN),
+            fault(|scene| scene.meshes[0].positions[1].y = f32::NAN),
+            fault(|scene| scene.meshes[0].normals[1].y = f32::NAN),
+            fault(|scene| scene.meshes[0].normals.truncate(2)),
+            fault(|scene| scene.meshes[0].indices[1] = 3),
+            fault(|scene| scene.meshes[0].indices.truncate(2)),
+        ];
+        for fault in faults {
+            assert!(fault.starts_with("object 'kite': "), "{fault}");
+        }
+    }
+
+    #[test]
+    fn motion_is_checked() {
+        let orbit = Orbit {
+            object: 1,
+            base: DAffine3::IDENTITY,
+            centre: DVec3::ZERO,
+            axis: DVec3::Y,
+            radians_per_s: 1.0,
+            bob: DVec3::ZERO,
+            bob_period_s: 0.0,
+        };
+        let stray = fault(|scene| scene.motion = Motion::Orbits(vec![orbit]));
+        assert!(stray.contains("number 1"), "{stray}");
+        let broken = Orbit { object: 0, axis: DVec3::NAN, ..orbit };
+        let broken = fault(|scene| scene.motion = Motion::Orbits(vec![broken]));
+        assert!(broken.starts_with("object 'kite'"), "{broken}");
+    }
+
+    #[test]
+    fn too_many_objects_are_refused() {
+        let message = fault(|scene| scene.objects = vec![scene.objects[0].clone(); MOST_OBJECTS + 1]);
+        assert!(message.contains("16777217 objects"), "{message}");
+    }
+}

@@ -1,0 +1,169 @@
+//! Reads glTF 2.0, as .gltf with its data beside or within it, or as .glb.
+//!
+//! Read are: meshes of every mode and vertex format (KHR_mesh_quantization included), instances (EXT_mesh_gpu_instancing), node
+//! trees in `f64`, node animation, cameras, and of materials the base colour and the alpha mode. Skins are drawn as their mesh lies
+//! in the file, morph targets at their default weights. Textures and lights are not read.
+//!
+//! Whatever is in the file, [`import`] returns: it does not panic, does not recurse, and allocates in proportion to the file.
+
+mod accessor;
+mod buffers;
+mod cameras;
+mod container;
+mod document;
+mod fault;
+mod mesh;
+mod motion;
+mod normals;
+mod objects;
+mod tree;
+
+use crate::animation::{Attachment, Motion, NodeAnimation};
+use crate::camera::Camera;
+use crate::error::SceneError;
+use crate::model::Scene;
+use accessor::Accessors;
+use document::Document;
+use fault::{broken, element, label, Fault, Outcome};
+use motion::Moving;
+use objects::Objects;
+use std::path::Path;
+use tree::{node_label, Tree};
+
+/// Reads a .gltf or .glb file. Its default scene, or else its first, is taken; a file without one gives an empty scene.
+///
+/// There is one object for each mesh primitive of each node (and instance), in order of node, then primitive; nodes that show the
+/// same mesh share it. Objects and cameras on animated nodes are placed as at time 0 and move with [`Scene::motion`].
+///
+/// # Errors
+/// If the file or its data cannot be read, breaks the specification, requires an extension that Sightline does not know, or has
+/// more than 2^24 objects or 2^31 indices. The message is one line; it names the file, the element and the fault.
+pub fn import(path: &Path) -> Result<Scene, SceneError> {
+    let file = std::fs::read(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+    import_bytes(path, &file)
+}
+
+/// Reads the contents of a .gltf or .glb file, like [`import`]. `path` names the scene and the file in errors; data files are looked
+/// for in its folder.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_bytes(path: &Path, file: &[u8]) -> Result<Scene, SceneError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    read(file, folder, name).map_err(|fault| fault.in_file(path))
+}
+
+fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
+    let parts = container::split(file)?;
+    let document = document::parse(parts.json)?;
+    let tree = Tree::new(&document)?;
+    check_skins(&document, &tree)?;
+    let buffers = buffers::load(&document, parts.binary, folder)?;
+    let accessors = Accessors::new(&document, &buffers);
+    let moving = Moving::read(&document, &accessors, &tree)?;
+
+    let mut objects = Objects::new(&document, &accessors);
+    let mut cameras = Vec::new();
+    // In order of index, whatever the tree looks like.
+    let mut nodes = tree.order.clone();
+    nodes.sort_unstable();
+    for &node in &nodes {
+        objects.add(node, &tree)?;
+        if let Some(camera) = document.nodes[node].camera {
+            let name = document.nodes[node].name.as_deref();
+            let camera = cameras::read(&document, camera, name, tree.world_from_node[node]);
+            cameras.push((node, camera.map_err(|fault| fault.within(|| node_label(&document, node)))?));
+        }
+    }
+    warn_of_stills(&document, &name, &nodes);
+    let (nodes_of_cameras, cameras) = cameras.into_iter().unzip();
+    let mut scene = Scene { name, meshes: objects.meshes, objects: objects.objects, cameras, ..Scene::default() };
+    set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
+    check_cameras(&scene.cameras)?;
+    Ok(scene)
+}
+
+/// Hangs objects and cameras on the animated nodes and puts them where they are at time 0.
+fn set_in_motion(
+    scene: &mut Scene,
+    document: &Document,
+    tree: &Tree,
+    moving: Moving,
+    placements: &[objects::Placement],
+    nodes_of_cameras: Vec<usize>,
+) -> Outcome<()> {
+    let carriers = placements.iter().map(|placement| placement.node).chain(nodes_of_cameras.iter().copied());
+    let carriers: Vec<usize> = carriers.filter(|&node| moving.moves(node)).collect();
+    if carriers.is_empty() {
+        return Ok(());
+    }
+    let (nodes, places) = moving.into_nodes(document, tree, &carriers)?;
+    let attachments = placements.iter().enumerate().filter_map(|(object, placement)| {
+        let node = places[placement.node]?;
+        // There are at most 2^24 objects.
+        Some(Attachment { object: object as u32, node, node_from_object: placement.node_from_object })
+    });
+    scene.motion = Motion::Nodes(NodeAnimation::new(nodes, attachments.collect()).map_err(Fault::Broken)?);
+    let mut transforms = Vec::new();
+    scene.motion.transforms_at(0.0, &mut transforms);
+    for (index, world_from_object) in transforms {
+        let object = &mut scene.objects[index as usize];
+        if !world_from_object.is_finite() {
+            return broken(format!("object '{}': its place at time 0 is not finite", object.name));
+        }
+        (object.world_from_object, object.dynamic) = (world_from_object, true);
+    }
+    for (camera, node) in scene.cameras.iter_mut().zip(nodes_of_cameras) {
+        camera.node = places[node];
+        if let Some(pose) = camera.node.and_then(|node| scene.motion.camera_pose_at(node, 0.0)) {
+            camera.pose = pose;
+        }
+    }
+    Ok(())
+}
+
+/// Holds the skins in use to the specification, though they are not drawn yet.
+fn check_skins(document: &Document, tree: &Tree) -> Outcome<()> {
+    let mut used: Vec<usize> = tree.order.iter().filter_map(|&node| document.nodes[node].skin).collect();
+    used.sort_unstable();
+    used.dedup();
+    for index in used {
+        let skin = element(&document.skins, index, "skin")?;
+        let place = || label("skin", index, skin.name.as_deref());
+        for &joint in &skin.joints {
+            element(&document.nodes, joint, "node").map_err(|fault| fault.within(place))?;
+        }
+        let mut roots = skin.joints.iter().map(|&joint| (joint, tree.roots[joint]));
+        let Some((first, root)) = roots.next() else {
+            return broken(format!("{}: it has no joints", place()));
+        };
+        if let Some((joint, _)) = roots.find(|&(_, other)| other != root) {
+            return broken(format!(
+                "{}: its joints {first} and {joint} have no common root; put them under one node",
+                place()
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_cameras(cameras: &[Camera]) -> Outcome<()> {
+    match cameras.iter().find(|camera| !(camera.pose.position.is_finite() && camera.pose.rotation.is_finite())) {
+        Some(camera) => broken(format!("camera '{}': its place in the world is not finite", camera.name)),
+        None => Ok(()),
+    }
+}
+
+/// Says once what is drawn without its motion.
+fn warn_of_stills(document: &Document, scene: &str, nodes: &[usize]) {
+    let skinned = nodes.iter().filter(|&&node| document.nodes[node].skin.is_some()).count();
+    if skinned > 0 {
+        tracing::warn!("{scene}: {skinned} skinned meshes are drawn as they lie in the file, without their skeletons");
+    }
+    let channels = document.animations.iter().flat_map(|animation| &animation.channels);
+    let morphs = channels.filter(|channel| channel.target.path == "weights").count();
+    if morphs > 0 {
+        tracing::warn!("{scene}: {morphs} animations of morph weights are not played");
+    }
+}

@@ -1,0 +1,182 @@
+//! Objects: every primitive of every node's mesh, once for each instance.
+
+use super::accessor::{Accessors, Allowed};
+use super::document::{Document, Instancing};
+use super::fault::{broken, element, label, one_line, Fault, Outcome};
+use super::mesh;
+use super::tree::{node_label, placed, unit, Tree};
+use crate::check::MOST_OBJECTS;
+use crate::model::{Mesh, Object};
+use glam::{DAffine3, DQuat, DVec3};
+use std::collections::HashMap;
+
+/// Longest object or mesh name kept, in characters: a node's name is copied to each of its instances.
+const LONGEST_NAME: usize = 200;
+
+/// A mesh primitive that has been read, and what its material says.
+#[derive(Clone, Copy)]
+struct Part {
+    mesh: u32,
+    colour: [f32; 4],
+    translucent: bool,
+    masked: bool,
+}
+
+/// An object's place, for motion.
+pub(super) struct Placement {
+    /// The node it hangs on.
+    pub node: usize,
+    /// Node from object: identity, but for instances.
+    pub node_from_object: DAffine3,
+}
+
+/// Collects objects and the meshes they share.
+pub(super) struct Objects<'a> {
+    document: &'a Document,
+    accessors: &'a Accessors<'a>,
+    /// By mesh, and by node if the node has morph weights of its own.
+    parts: HashMap<(usize, Option<usize>), Vec<Part>>,
+    indices: usize,
+    /// What has been found so far.
+    pub meshes: Vec<Mesh>,
+    pub objects: Vec<Object>,
+    pub placements: Vec<Placement>,
+}
+
+impl<'a> Objects<'a> {
+    pub(super) fn new(document: &'a Document, accessors: &'a Accessors<'a>) -> Self {
+        let (meshes, objects, placements) = (Vec::new(), Vec::new(), Vec::new());
+        Objects { document, accessors, parts: HashMap::new(), indices: 0, meshes, objects, placements }
+    }
+
+    /// Adds the objects of one node.
+    pub(super) fn add(&mut self, node: usize, tree: &Tree) -> Outcome<()> {
+        let Some(mesh) = self.document.nodes[node].mesh else { return Ok(()) };
+        let parts = self.parts(node, mesh)?;
+        let instances = match &self.document.nodes[node].extensions.instancing {
+            Some(instancing) => self.instances(instancing).map_err(|fault| {
+                fault.within(|| format!("{}: EXT_mesh_gpu_instancing", node_label(self.document, node)))
+            })?,
+            None => vec![DAffine3::IDENTITY],
+        };
+        let total = parts.len().checked_mul(instances.len()).and_then(|more| more.checked_add(self.objects.len()));
+        if total.is_none_or(|total| total > MOST_OBJECTS) {
+            return Err(Fault::TooLarge(format!("it has more than {MOST_OBJECTS} objects")));
+        }
+        let name = self.document.nodes[node].name.as_deref().or(self.document.meshes[mesh].name.as_deref());
+        let name = name.map_or_else(|| format!("node {node}"), |name| one_line(name, LONGEST_NAME));
+        for (index, part) in parts.iter().enumerate() {
+            let name = if parts.len() == 1 { name.clone() } else { format!("{name}/{index}") };
+            for (instance, &node_from_object) in instances.iter().enumerate() {
+                let name = if instances.len() == 1 { name.clone() } else { format!("{name}#{instance}") };
+                let world_from_object = placed(tree.world_from_node[node], node_from_object);
+                if !world_from_object.is_finite() {
+                    return broken(format!(
+                        "{}: its place in the world is not finite",
+                        node_label(self.document, node)
+                    ));
+                }
+                let Part { mesh, colour, translucent, masked } = *part;
+                self.objects.push(Object {
+                    name,
+                    mesh,
+                    world_from_object,
+                    colour,
+                    dynamic: false,
+                    translucent,
+                    masked,
+                });
+                self.placements.push(Placement { node, node_from_object });
+            }
+        }
+        Ok(())
+    }
+
+    /// The primitives of a mesh, read when first needed.
+    fn parts(&mut self, node: usize, index: usize) -> Outcome<Vec<Part>> {
+        let document = self.document;
+        let own_weights = document.nodes[node].weights.as_deref();
+        let key = (index, own_weights.map(|_| node));
+        if let Some(parts) = self.parts.get(&key) {
+            return Ok(parts.clone());
+        }
+        let mesh =
+            element(&document.meshes, index, "mesh").map_err(|fault| fault.within(|| node_label(document, node)))?;
+        let weights = own_weights.or(mesh.weights.as_deref()).unwrap_or(&[]);
+        let mut parts = Vec::new();
+        for (at, primitive) in mesh.primitives.iter().enumerate() {
+            let place = || format!("{}, primitive {at}", label("mesh", index, mesh.name.as_deref()));
+            let name =
+                mesh.name.as_deref().map_or_else(|| format!("mesh {index}"), |name| one_line(name, LONGEST_NAME));
+            let name = if mesh.primitives.len() == 1 { name } else { format!("{name}/{at}") };
+            let read = mesh::read(self.accessors, primitive, weights, name, &mut self.indices)
+                .map_err(|fault| fault.within(place))?;
+            let Some(read) = read else {
+                tracing::warn!("{} has no positions and is not drawn", place());
+                continue;
+            };
+            // At most one mesh an object and index, both far below 2^32.
+            let mesh = self.meshes.len() as u32;
+            self.meshes.push(read);
+            parts.push(self.part(mesh, primitive.material).map_err(|fault| fault.within(place))?);
+        }
+        self.parts.insert(key, parts.clone());
+        Ok(parts)
+    }
+
+    fn part(&self, mesh: u32, material: Option<usize>) -> Outcome<Part> {
+        let mut part = Part { mesh, colour: [1.0; 4], translucent: false, masked: false };
+        let Some(index) = material else { return Ok(part) };
+        let material = element(&self.document.materials, index, "material")?;
+        if let Some(colour) = material.pbr_metallic_roughness.base_color_factor {
+            part.colour = colour.map(|channel| channel.clamp(0.0, 1.0));
+        }
+        match material.alpha_mode.as_deref() {
+            None | Some("OPAQUE") => {}
+            Some("BLEND") => part.translucent = true,
+            Some("MASK") => part.masked = true,
+            Some(other) => {
+                let material = label("material", index, material.name.as_deref());
+                return broken(format!("{material}: its alphaMode '{other}' is none of OPAQUE, MASK and BLEND"));
+            }
+        }
+        Ok(part)
+    }
+
+    /// Node from object of each instance (EXT_mesh_gpu_instancing).
+    fn instances(&self, instancing: &Instancing) -> Outcome<Vec<DAffine3>> {
+        let accessor = |name: &str| instancing.attributes.get(name).copied();
+        let counts = instancing.attributes.values().map(|&index| self.accessors.count(index));
+        let counts: Vec<u64> = counts.collect::<Outcome<_>>()?;
+        let Some(&count) = counts.first() else { return Ok(vec![DAffine3::IDENTITY]) };
+        if counts.iter().any(|&other| other != count) {
+            return broken("its attributes have different counts");
+        }
+        if count > MOST_OBJECTS as u64 {
+            return Err(Fault::TooLarge(format!("it has more than {MOST_OBJECTS} objects")));
+        }
+        let vectors = |name: &str, otherwise: f32| match accessor(name) {
+            Some(index) => {
+                self.accessors.vectors::<3>(index, Allowed::Normalized).map_err(|fault| fault.within(|| name.into()))
+            }
+            None => Ok(vec![[otherwise; 3]; count as usize]),
+        };
+        let rotations = match accessor("ROTATION") {
+            Some(index) => self
+                .accessors
+                .vectors::<4>(index, Allowed::Normalized)
+                .map_err(|fault| fault.within(|| "ROTATION".into()))?,
+            None => vec![[0.0, 0.0, 0.0, 1.0]; count as usize],
+        };
+        let (translations, scales) = (vectors("TRANSLATION", 0.0)?, vectors("SCALE", 1.0)?);
+        let parts = translations.into_iter().zip(rotations).zip(scales);
+        parts
+            .map(|((translation, rotation), scale)| {
+                let rotation = unit(DQuat::from_array(rotation.map(f64::from)))?;
+                let (scale, translation) =
+                    (DVec3::from_array(scale.map(f64::from)), DVec3::from_array(translation.map(f64::from)));
+                Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,99 @@
+//! Where to look at a scene from: its own camera, or a place made from its bounds.
+
+use super::Shot;
+use crate::camera::{Pose, Projection};
+use crate::model::{Aabb, Scene};
+use glam::{DQuat, DVec3};
+
+/// Field of view of derived cameras, radians.
+const FOV_Y: f64 = 60.0 * std::f64::consts::PI / 180.0;
+/// The near plane of derived cameras, in radii of the scene.
+const NEAR: f64 = 5e-4;
+/// Where `closing-in` starts, in radii of the scene from its middle.
+const FAR_OUTSIDE: f64 = 4.0;
+
+/// The place that the standard paths start from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Viewpoint {
+    pub pose: Pose,
+    pub projection: Projection,
+    /// Far outside, looking at the scene: where `closing-in` starts.
+    pub outside: Pose,
+    /// Radius of the scene in metres.
+    pub reach: f64,
+    /// How far the camera can move sideways.
+    pub clearance: f64,
+}
+
+impl Viewpoint {
+    /// The camera of that index, or if there is none, a three-quarter view from outside that holds the whole scene.
+    pub(super) fn of(scene: &Scene, camera: usize) -> Self {
+        let bounds = scene.bounds();
+        let bounds = if bounds.is_valid() { bounds } else { Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE } };
+        let radius = bounds.half_extent().length().max(f64::MIN_POSITIVE.sqrt());
+        let radius = if bounds.min == bounds.max { 1.0 } else { radius };
+        match scene.cameras.get(camera) {
+            Some(camera) => {
+                let forward = camera.pose.forward();
+                // Back and up, so that a camera in a street comes down along the street and not through houses.
+                let level = DVec3::new(forward.x, 0.0, forward.z).normalize_or(DVec3::NEG_Z);
+                let back = (DVec3::Y - level).normalize();
+                let start = camera.pose.position + back * (FAR_OUTSIDE * radius);
+                let clearance = scene.walk.as_ref().map_or(0.1 * radius, |walk| walk.clearance);
+                Viewpoint {
+                    pose: camera.pose,
+                    projection: camera.projection,
+                    outside: Pose::looking_at(start, bounds.centre()),
+                    reach: radius,
+                    clearance,
+                }
+            }
+            None => Self::outside(&bounds, radius),
+        }
+    }
+
+    fn outside(bounds: &Aabb, radius: f64) -> Self {
+        let centre = bounds.centre();
+        // Flat scenes, cities for one, are looked at from higher up: from the side they hide themselves.
+        let half = bounds.half_extent();
+        let flatness = 1.0 - (half.y / half.x.max(half.z).max(f64::MIN_POSITIVE)).min(1.0);
+        let direction = DVec3::new(0.6, 0.35 + 0.45 * flatness, 1.0).normalize();
+        let distance = radius / (0.5 * FOV_Y).sin();
+        let pose = Pose::looking_at(centre + direction * distance, centre);
+        Viewpoint {
+            pose,
+            projection: Projection::Perspective { fov_y: FOV_Y, near: NEAR * radius, far: Some(distance + 1.5 * radius) },
+            outside: Pose::looking_at(centre + direction * (FAR_OUTSIDE * radius), centre),
+            reach: radius,
+            clearance: 0.5 * radius,
+        }
+    }
+
+    /// From outside (0) to the viewpoint (1). The distance left shrinks by the same factor in each frame, so that things
+    /// grow evenly; the far plane moves out with the camera.
+    pub(super) fn closing_in(&self, t: f64, seconds: f64) -> Shot {
+        let arm = self.outside.position - self.pose.position;
+        // From the whole way to a hundredth of it evenly; the subtraction takes the last hundredth off.
+        let left = (0.01f64.powf(t) - 0.01) / 0.99;
+        let position = self.pose.position + arm * left;
+        let rotation = short_way(self.outside.rotation, self.pose.rotation, 1.0 - left);
+        let projection = match self.projection {
+            Projection::Perspective { fov_y, near, far } => {
+                Projection::Perspective { fov_y, near, far: far.map(|far| far + arm.length() * left) }
+            }
+            Projection::Orthographic { half_height, near, far } => {
+                Projection::Orthographic { half_height, near, far: far + arm.length() * left }
+            }
+            Projection::Custom(_) => self.projection,
+        };
+        Shot { pose: Pose { position, rotation }, projection, seconds }
+    }
+}
+
+/// From `from` to `to` along the shorter arc, exactly `to` at 1.
+fn short_way(from: DQuat, to: DQuat, t: f64) -> DQuat {
+    if t >= 1.0 {
+        return to;
+    }
+    from.slerp(to, t).normalize()
+}

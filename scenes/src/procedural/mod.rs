@@ -1,0 +1,137 @@
+//! Scenes made by rule from a seed, at any size. The same options always give the same bytes.
+
+mod boxes;
+mod city_block;
+mod furniture;
+mod moving_boxes;
+mod parts;
+mod random;
+mod rooms;
+
+use crate::model::{Mesh, Object, Scene};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// What a procedural scene can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneOptions {
+    /// How many objects, as a multiple of the scene's standard; above 0. Files ignore it.
+    pub scale: f64,
+    /// Which of the scenes of this kind. Files ignore it.
+    pub seed: u64,
+}
+
+impl Default for SceneOptions {
+    fn default() -> Self {
+        SceneOptions { scale: 1.0, seed: 1 }
+    }
+}
+
+/// One kind of procedural scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Name on the command line and in results.
+    pub name: &'static str,
+    /// The short name in the papers' tables; empty if there is none.
+    pub alias: &'static str,
+    /// One line for `sightline scene`.
+    pub about: &'static str,
+    /// Makes it.
+    pub make: fn(&SceneOptions) -> Scene,
+}
+
+/// All procedural scenes.
+pub const SCENES: &[Entry] = &[
+    Entry {
+        name: "city-block",
+        alias: "cb",
+        about: "streets between closed house fronts with furnished interiors: 94,000 objects, nearly all hidden",
+        make: city_block::make,
+    },
+    Entry {
+        name: "rooms",
+        alias: "",
+        about: "furnished rooms with doorways along corridors: 4,000 objects",
+        make: rooms::make,
+    },
+    Entry {
+        name: "boxes",
+        alias: "",
+        about: "a wall and 400 plain bodies around it, reflected, flat and skewed ones among them",
+        make: boxes::make,
+    },
+    Entry {
+        name: "moving-boxes",
+        alias: "",
+        about: "boxes of which a third orbit, spin or bob",
+        make: moving_boxes::make,
+    },
+];
+
+/// A scene in the making.
+#[derive(Default)]
+struct Assembly {
+    scene: Scene,
+}
+
+impl Assembly {
+    fn new(name: &str) -> Self {
+        Assembly { scene: Scene { name: name.into(), ..Scene::default() } }
+    }
+
+    /// Takes a mesh and returns its index.
+    fn mesh(&mut self, mesh: Mesh) -> u32 {
+        self.scene.meshes.push(mesh);
+        (self.scene.meshes.len() - 1) as u32
+    }
+
+    /// Places a mesh, opaque, under its own name. The transform is rounded to `f32`: what the GPU draws and what glTF tools
+    /// read is then exactly what is meant.
+    fn place(&mut self, mesh: u32, colour: [f32; 3], world_from_object: DAffine3) {
+        let rounded = world_from_object.to_cols_array().map(|part| f64::from(part as f32));
+        self.scene.objects.push(Object {
+            name: self.scene.meshes[mesh as usize].name.clone(),
+            mesh,
+            world_from_object: DAffine3::from_cols_array(&rounded),
+            colour: [colour[0], colour[1], colour[2], 1.0],
+            dynamic: false,
+            translucent: false,
+            masked: false,
+        });
+    }
+
+    fn len(&self) -> usize {
+        self.scene.objects.len()
+    }
+}
+
+/// A turn about +y by quarter turns, without rounding: boxes stay exactly on the axes.
+fn quarter_turns(turns: i32) -> DMat3 {
+    let (cos, sin) = match turns.rem_euclid(4) {
+        0 => (1.0, 0.0),
+        1 => (0.0, 1.0),
+        2 => (-1.0, 0.0),
+        _ => (0.0, -1.0),
+    };
+    DMat3::from_cols(DVec3::new(cos, 0.0, -sin), DVec3::Y, DVec3::new(sin, 0.0, cos))
+}
+
+/// Somewhere, turned by quarter turns.
+fn standing(at: DVec3, turns: i32) -> DAffine3 {
+    DAffine3 { matrix3: quarter_turns(turns), translation: at }
+}
+
+/// Somewhere, turned by any angle in radians about +y.
+fn turned(at: DVec3, angle: f64) -> DAffine3 {
+    DAffine3 { matrix3: DMat3::from_rotation_y(angle), translation: at }
+}
+
+/// Somewhere, scaled along the world's axes.
+fn sized(at: DVec3, size: DVec3) -> DAffine3 {
+    DAffine3 { matrix3: DMat3::from_diagonal(size), translation: at }
+}
+
+/// A colour within `spread` of another.
+fn shade(random: &mut random::Random, colour: [f32; 3], spread: f64) -> [f32; 3] {
+    let factor = random.range(1.0 - spread, 1.0 + spread) as f32;
+    colour.map(|part| (part * factor).clamp(0.0, 1.0))
+}

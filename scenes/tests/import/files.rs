@@ -1,0 +1,125 @@
+//! Laws of containers, data files and versions.
+
+use crate::model::{assert_says, error, import, Model};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// An empty folder of this test run.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("import-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for test files");
+    folder
+}
+
+/// The triangle as a .gltf that looks for its data at `uri`.
+fn triangle_at(uri: &str) -> Model {
+    let mut model = Model::triangle();
+    model.json["buffers"][0]["uri"] = uri.into();
+    model
+}
+
+#[test]
+fn a_missing_buffer_is_named() {
+    let folder = folder("missing");
+    let file = folder.join("scene.gltf");
+    std::fs::write(&file, triangle_at("gone.bin").json.to_string()).expect("a test file");
+    let message = scenes::import(&file).expect_err("a missing buffer").to_string();
+    for text in ["scene.gltf: buffer 0", "'gone.bin'", "put it in the folder", folder.to_str().expect("UTF-8")] {
+        assert_says(&message, text);
+    }
+    let message = scenes::import(&folder.join("none.glb")).expect_err("a missing file").to_string();
+    assert_says(&message, "none.glb: cannot read it");
+    std::fs::remove_dir_all(folder).expect("the folder made above");
+}
+
+#[test]
+fn data_files_are_found_beside_the_scene() {
+    let folder = folder("beside");
+    let file = folder.join("scene.gltf");
+    let model = triangle_at("my%20data.bin");
+    std::fs::write(&file, model.json.to_string()).expect("a test file");
+    std::fs::write(folder.join("my data.bin"), [&model.binary[..], b"more"].concat()).expect("a test file");
+    let scene = scenes::import(&file).expect("a legal file");
+    assert_eq!((scene.name.as_str(), scene.objects.len()), ("scene", 1));
+    std::fs::write(folder.join("my data.bin"), &model.binary[..30]).expect("a test file");
+    let message = scenes::import(&file).expect_err("a short buffer").to_string();
+    assert_says(&message, "buffer 0: it should have 36 bytes, but there are 30");
+    std::fs::remove_dir_all(folder).expect("the folder made above");
+}
+
+#[test]
+fn base64_data_is_read() {
+    // The corners of the triangle by an independent encoder (Python's base64).
+    let text = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let scene =
+        import(triangle_at(&format!("data:application/octet-stream;base64,{text}")).json.to_string().as_bytes());
+    assert_eq!(scene.expect("a legal file").meshes, Model::triangle().scene().meshes);
+    let refused = |uri: &str| error(triangle_at(uri).json.to_string().as_bytes());
+    assert_says(&refused("data:;base64,AAAA"), "it should have 36 bytes, but there are 3");
+    assert_says(&refused("data:;base64,AA*A"), "illegal character at 2");
+    assert_says(&refused("data:;base64"), "no comma");
+}
+
+#[test]
+fn only_plain_files_beside_the_scene_are_opened() {
+    let refused = |uri: &str| error(triangle_at(uri).json.to_string().as_bytes());
+    assert_says(
+        &refused("https://example.invalid/a.bin"),
+        "data at 'https://example.invalid/a.bin' is not supported; download",
+    );
+    assert_says(&refused("/dev/zero"), "not given relative to the scene");
+    assert_says(&refused("../scenes"), "cannot be read");
+}
+
+#[test]
+fn a_glb_cut_anywhere_is_refused() {
+    let file = Model::triangle().glb();
+    for length in 0..file.len() {
+        error(&file[..length]);
+    }
+    assert_says(&error(&file[..40]), "was it cut off on the way?");
+}
+
+#[test]
+fn wrong_lengths_in_a_glb_are_refused() {
+    let file = Model::triangle().glb();
+    let with = |at: usize, word: u32| [&file[..at], &word.to_le_bytes(), &file[at + 4..]].concat();
+    assert_says(&error(&with(8, 77)), "its header says 77 bytes");
+    assert_says(&error(&with(12, u32::MAX)), "the chunk at byte 12 says 4294967295 bytes");
+    assert_says(&error(&with(12, 4)), "made/here.glb");
+    assert_says(&error(&with(16, 0)), "its first chunk is not JSON");
+    assert_says(&error(&with(4, 1)), "glTF version 1.0 is not supported; convert it to glTF 2.0");
+    assert_says(&error(&with(4, 9)), "glb version 9");
+    let no_data = with(file.len() - 36 - 4, 0);
+    assert_says(&error(&no_data), "buffer 0 has no data");
+}
+
+#[test]
+fn other_versions_and_unknown_extensions_are_named() {
+    let mut model = Model::triangle();
+    model.json["asset"] = json!({ "version": "1.0" });
+    assert_says(&model.error(), "glTF version 1.0 is not supported; convert");
+    model.json["asset"] = json!({ "version": "2.0", "minVersion": "2.1" });
+    assert_says(&model.error(), "glTF version '2.1' is not supported");
+    model.json["asset"] = json!({});
+    assert_says(&model.error(), "'asset' has no 'version'");
+    model.json["asset"] = json!({ "version": "2.0" });
+    for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_technique_webgl", "ACME_spheres"] {
+        model.json["extensionsRequired"] = json!([name]);
+        assert_says(&model.error(), &format!("the required extension {name} is not supported; "));
+    }
+    model.json["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"]);
+    model.json["extensionsUsed"] = json!(["ACME_spheres"]);
+    assert_eq!(model.scene().objects.len(), 1);
+}
+
+#[test]
+fn errors_are_one_short_line_whatever_the_file_says() {
+    let mut model = Model::triangle();
+    model.json["meshes"][0]["name"] = format!("a\nb\u{1b}[31m{}", "x".repeat(100_000)).into();
+    model.json["meshes"][0]["primitives"][0]["mode"] = 9.into();
+    let message = model.error();
+    assert!(message.len() < 600 && !message.contains(char::is_control), "{message}");
+    model.json["scene"] = "y".repeat(100_000).into();
+    assert!(model.error().len() < 600);
+}

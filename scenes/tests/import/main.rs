@@ -1,0 +1,10 @@
+//! Laws of the glTF import, held by Debian's test models and by small files made here.
+
+mod accessors;
+mod files;
+mod model;
+mod models;
+mod modes;
+mod motion;
+mod mutations;
+mod nodes;

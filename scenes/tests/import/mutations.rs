@@ -1,0 +1,107 @@
+//! The law that nothing in a file makes the import panic.
+
+use crate::model::{import, Model, U16};
+use proptest::prelude::*;
+use serde_json::json;
+
+/// A file that uses most of what the import reads.
+fn rich() -> Model {
+    let mut model = Model::triangle();
+    let indices = model.accessor(&[0, 0, 1, 0, 2, 0], U16, "SCALAR", 3);
+    let deltas = model.floats("VEC3", &[0.5; 9]);
+    let (at, value) = (model.view(&[1]), model.view(&[0; 12]));
+    model.json["accessors"][deltas]["sparse"] = json!({ "count": 1, "indices": { "bufferView": at, "componentType": 5121 }, "values": { "bufferView": value } });
+    let primitive = &mut model.json["meshes"][0]["primitives"][0];
+    primitive["indices"] = indices.into();
+    primitive["attributes"]["NORMAL"] = deltas.into();
+    primitive["targets"] = json!([{ "POSITION": deltas }]);
+    primitive["mode"] = 5.into();
+    primitive["material"] = 0.into();
+    model.json["meshes"][0]["weights"] = json!([0.5]);
+    model.json["materials"] =
+        json!([{ "alphaMode": "MASK", "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] } }]);
+    model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
+    let places = model.floats("VEC3", &[1., 2., 3., 4., 5., 6.]);
+    let instancing = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": places } } });
+    model.json["nodes"] = json!([
+        { "children": [1, 2], "rotation": [0, 0, 0, 1] },
+        { "mesh": 0, "skin": 0, "extensions": instancing },
+        { "camera": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] },
+    ]);
+    model.json["skins"] = json!([{ "joints": [2] }]);
+    let (input, output) = (model.floats("SCALAR", &[0., 1.]), model.floats("VEC4", &[0., 0., 0., 1., 0., 1., 0., 0.]));
+    model.channel(0, "rotation", "LINEAR", input, output);
+    model
+}
+
+fn check(file: &[u8]) {
+    match import(file) {
+        Ok(scene) => {
+            let mut places = Vec::new();
+            scene.motion.transforms_at(0.3, &mut places);
+            for object in &scene.objects {
+                assert!((object.mesh as usize) < scene.meshes.len() && object.world_from_object.is_finite());
+            }
+            for mesh in &scene.meshes {
+                assert_eq!(mesh.positions.len(), mesh.normals.len());
+                assert!(mesh.indices.iter().all(|&index| (index as usize) < mesh.positions.len()));
+                assert!(mesh.positions.iter().chain(&mesh.normals).all(|vector| vector.is_finite()));
+            }
+        }
+        Err(error) => assert!(!error.to_string().contains('\n')),
+    }
+}
+
+#[test]
+fn the_file_to_mutate_is_legal() {
+    let scene = rich().scene();
+    assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (2, 1, 2));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_changed_or_cut_byte_makes_it_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..8), length in any::<prop::sample::Index>(), cut in prop::bool::weighted(0.1),
+    ) {
+        let mut file = rich().glb();
+        for (at, byte) in changes {
+            let at = at.index(file.len());
+            file[at] = byte;
+        }
+        if cut {
+            file.truncate(length.index(file.len()));
+        }
+        check(&file);
+    }
+
+    /// Most changed bytes break the JSON; changed numbers reach what is behind it.
+    #[test]
+    fn no_changed_number_makes_it_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![
+            (0_u64..8).prop_map(|number| number.to_string()), (5119_u64..5128).prop_map(|number| number.to_string()),
+            any::<u64>().prop_map(|number| number.to_string()), any::<f64>().prop_map(|number| format!("{number:e}")),
+        ]), 1..4),
+    ) {
+        let mut model = rich();
+        let mut json = model.json.to_string();
+        for (at, number) in changes {
+            let bounds: Vec<(usize, usize)> = numbers(&json);
+            let (start, end) = bounds[at.index(bounds.len())];
+            json.replace_range(start..end, &number);
+        }
+        if let Ok(json) = serde_json::from_str(&json) {
+            model.json = json;
+            check(&model.glb());
+        }
+    }
+}
+
+/// Start and end of each number in the text.
+fn numbers(text: &str) -> Vec<(usize, usize)> {
+    let part = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
+    let bytes = text.as_bytes();
+    let starts = (1..bytes.len()).filter(|&at| bytes[at].is_ascii_digit() && b":[,".contains(&bytes[at - 1]));
+    starts.map(|start| (start, start + bytes[start..].iter().take_while(|&&byte| part(byte)).count())).collect()
+}

@@ -1,0 +1,226 @@
+//! The tables on the terminal: one row per method, and one row per stage for `--explain`. Both fit 120 columns.
+
+use super::{Method, Results, Stage};
+
+/// Widest line of any table.
+const WIDTH: usize = 120;
+/// A longer label gets a line of its own above its numbers: a shortened one could no longer be told from another.
+const LABEL_WIDTH: usize = 22;
+
+/// One row per method, in the order asked for: times, ratios to `none` and `ref` where those ran, and errors.
+pub fn table(results: &Results) -> String {
+    let columns = columns(results);
+    let mut grid = Grid::new(columns.iter().map(|column| column.head).collect(), LABEL_WIDTH);
+    for method in &results.methods {
+        let cells = columns.iter().map(|column| (column.cell)(method)).collect();
+        grid.rows.push((method.label.clone(), cells));
+    }
+    let mut lines = heading(results);
+    lines.push(String::new());
+    lines.extend(grid.lines("method"));
+    lines.push(String::new());
+    lines.push(
+        "frame: median ms · C/R: culled / culled by ref · diff px: pixels of other depth, mean · PSNR: dB, worst frame"
+            .into(),
+    );
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// One row per stage of a method: did it run, why not, and what it costs. For `--explain`.
+pub fn stages_table(results: &Results, method: &Method) -> String {
+    let heads = vec!["ran", "ms", "share"];
+    let mut grid = Grid::new(heads, 34);
+    for stage in &method.stages {
+        let ms = if stage.skipped >= results.frames { "-".into() } else { milliseconds(stage.median_ms) };
+        let share = format!("{:.1} %", 100.0 * stage.share);
+        let cells = vec![ran(stage, results.frames), ms, share];
+        grid.rows.push((stage.name.clone(), cells));
+    }
+    let mut lines = grid.lines("stage");
+    let head = lines[0].clone() + "  why skipped";
+    lines[0] = head;
+    // A long name has a line of its own, so a stage's numbers are on the last of its lines.
+    let mut line = 1;
+    for stage in &method.stages {
+        line += grid.lines_of(&stage.name);
+        if let Some(reason) = stage.reason.as_deref().filter(|_| stage.skipped > 0) {
+            let with_reason = format!("{}  {reason}", lines[line - 1]);
+            lines[line - 1] = clipped(&with_reason);
+        }
+    }
+    let title = format!("{}: {}", method.label, method.guarantee);
+    lines.insert(0, clipped(&title));
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+fn ran(stage: &Stage, frames: u32) -> String {
+    match stage.skipped {
+        0 => "ran".into(),
+        skipped if skipped >= frames => "skipped".into(),
+        skipped => format!("{} of {frames}", frames - skipped),
+    }
+}
+
+struct Column {
+    head: &'static str,
+    cell: Box<dyn Fn(&Method) -> String>,
+}
+
+fn columns(results: &Results) -> Vec<Column> {
+    let mut columns = Vec::new();
+    let mut add = |head, cell: Box<dyn Fn(&Method) -> String>| columns.push(Column { head, cell });
+    add("frame", Box::new(|m| milliseconds(m.frame_ms.median)));
+    for (id, head) in [("none", "/none"), ("ref", "/ref")] {
+        let base = results.methods.iter().find(|method| method.method == id);
+        if let Some(base) = base.map(|base| base.frame_ms.median) {
+            add(head, Box::new(move |m| ratio(m.frame_ms.median, base)));
+        }
+    }
+    add("p95", Box::new(|m| milliseconds(m.frame_ms.p95)));
+    add("drawn", Box::new(|m| quantity(m.drawn_mean)));
+    add("C/R %", Box::new(|m| percent(m.culled_over_ref)));
+    add("false neg.", Box::new(|m| m.false_negatives.to_string()));
+    add("diff px", Box::new(|m| error(m.differing_pixels_mean)));
+    add("PSNR", Box::new(|m| decibels(m.psnr_worst_db)));
+    add("triangles", Box::new(|m| quantity(m.triangles_mean)));
+    add("overdraw", Box::new(|m| overdraw(m.overdraw_mean)));
+    columns
+}
+
+fn heading(results: &Results) -> Vec<String> {
+    let Results { scene, device, .. } = results;
+    let run = format!(
+        "{}: {} objects, {} triangles · path {} at speed {} · {} frames of {}x{}",
+        scene.name,
+        scene.objects,
+        quantity(scene.triangles as f64),
+        results.path,
+        results.speed,
+        results.frames,
+        results.size[0],
+        results.size[1]
+    );
+    let on = format!("{} ({}) · {} · Vulkan {}", device.name, device.kind, device.driver, device.api_version);
+    vec![clipped(&run), clipped(&on)]
+}
+
+/// Cut to the table's width, with a sign that it was cut.
+fn clipped(line: &str) -> String {
+    if line.chars().count() <= WIDTH {
+        return line.to_string();
+    }
+    line.chars().take(WIDTH - 1).chain(['…']).collect()
+}
+
+/// Three significant digits or more, so that 0.014 ms and 1824 ms both say something.
+fn milliseconds(ms: f64) -> String {
+    let decimals = match ms {
+        ms if ms < 9.9995 => 3,
+        ms if ms < 99.995 => 2,
+        ms if ms < 999.95 => 1,
+        _ => 0,
+    };
+    format!("{ms:.decimals$}")
+}
+
+fn ratio(part: f64, base: f64) -> String {
+    if base > 0.0 {
+        format!("{:.2}", part / base)
+    } else {
+        "-".into()
+    }
+}
+
+/// One decimal, but never 100.0 for less than all and never 0.0 for more than nothing.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 100.0 && percent > 99.9 {
+        ">99.9".into()
+    } else if percent > 0.0 && percent < 0.1 {
+        "<0.1".into()
+    } else {
+        format!("{percent:.1}")
+    }
+}
+
+/// Never 0 for an error that is there.
+fn error(mean: f64) -> String {
+    match mean {
+        0.0 => "0".into(),
+        mean if mean < 0.01 => "<0.01".into(),
+        mean if mean < 100.0 => format!("{mean:.2}"),
+        mean => format!("{mean:.0}"),
+    }
+}
+
+fn decibels(psnr: Option<f64>) -> String {
+    psnr.map_or("identical".into(), |db| format!("{db:.1}"))
+}
+
+fn overdraw(mean: Option<f64>) -> String {
+    mean.map_or("-".into(), |mean| format!("{mean:.2}"))
+}
+
+/// Whole below 10,000, then with k, M or G.
+fn quantity(count: f64) -> String {
+    match count {
+        count if count < 9999.5 => format!("{count:.0}"),
+        count if count < 999.95e3 => format!("{:.1}k", count / 1e3),
+        count if count < 999.95e6 => format!("{:.1}M", count / 1e6),
+        count => format!("{:.1}G", count / 1e9),
+    }
+}
+
+/// Rows with a label on the left and right-aligned cells.
+struct Grid {
+    heads: Vec<&'static str>,
+    label_limit: usize,
+    rows: Vec<(String, Vec<String>)>,
+}
+
+impl Grid {
+    fn new(heads: Vec<&'static str>, label_limit: usize) -> Self {
+        Self { heads, label_limit, rows: Vec::new() }
+    }
+
+    /// Lines that a row with this label takes.
+    fn lines_of(&self, label: &str) -> usize {
+        let length = label.chars().count();
+        if length <= self.label_limit {
+            1
+        } else {
+            length.div_ceil(WIDTH) + 1
+        }
+    }
+
+    fn lines(&self, label_head: &str) -> Vec<String> {
+        let fitting = self.rows.iter().map(|(label, _)| label.chars().count());
+        let fitting = fitting.filter(|&length| length <= self.label_limit);
+        let label_width = fitting.chain([label_head.chars().count()]).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.heads.len())
+            .map(|column| {
+                let cells = self.rows.iter().map(|(_, cells)| cells[column].chars().count());
+                cells.chain([self.heads[column].chars().count()]).max().unwrap_or(0)
+            })
+            .collect();
+        let line = |label: &str, cells: &mut dyn Iterator<Item = &str>| {
+            let mut line = format!("{label:label_width$}");
+            for (cell, width) in cells.zip(&widths) {
+                line.push_str(&format!("  {cell:>width$}"));
+            }
+            line
+        };
+        let mut lines = vec![line(label_head, &mut self.heads.iter().copied())];
+        for (label, cells) in &self.rows {
+            let mut cells = cells.iter().map(String::as_str);
+            if self.lines_of(label) == 1 {
+                lines.push(line(label, &mut cells));
+                continue;
+            }
+            let letters: Vec<char> = label.chars().collect();
+            lines.extend(letters.chunks(WIDTH).map(|part| part.iter().collect()));
+            lines.push(line("", &mut cells));
+        }
+        lines
+    }
+}

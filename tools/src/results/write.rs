@@ -1,0 +1,112 @@
+//! Writing `results.json` and `results.csv`, each whole or not at all.
+
+use super::{read, Fault, Method, Results, ResultsError};
+use crate::files::write_atomically;
+use std::path::Path;
+
+impl Results {
+    /// Writes the contract. What does not keep it (a label twice, a NaN) is an error and nothing is written.
+    pub fn write_json(&self, path: &Path) -> Result<(), ResultsError> {
+        let broken = |Fault { field, fault }| ResultsError::Broken { path: path.to_path_buf(), field, fault };
+        self.check().map_err(broken)?;
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|error| broken(Fault { field: "the results".into(), fault: error.to_string() }))?;
+        text.push('\n');
+        // What is written can be read back: the contract is checked on the text, not on our intentions.
+        read::parse(&text).map_err(broken)?;
+        Ok(write_atomically(path, |to| to.write_all(text.as_bytes()))?)
+    }
+
+    /// Writes one row per method: the run, the method's scalar fields, then one column `stage:NAME` in milliseconds for
+    /// each stage of any method (empty where a method has no such stage). The frames' arrays are only in the JSON.
+    pub fn write_csv(&self, path: &Path) -> Result<(), ResultsError> {
+        self.check().map_err(|Fault { field, fault }| ResultsError::Broken {
+            path: path.to_path_buf(),
+            field,
+            fault,
+        })?;
+        let stages = self.stage_names();
+        Ok(write_atomically(path, |to| {
+            let mut csv = csv::Writer::from_writer(to);
+            let columns = SCALARS.iter().map(|(name, _)| (*name).to_string());
+            let stage_columns = stages.iter().map(|name| format!("stage:{name}"));
+            csv.write_record(columns.chain(stage_columns))?;
+            for method in &self.methods {
+                let scalars = SCALARS.iter().map(|(_, of)| of(self, method));
+                let times = stages.iter().map(|name| stage_ms(method, name));
+                csv.write_record(scalars.chain(times))?;
+            }
+            csv.flush()
+        })?)
+    }
+
+    /// The stages of all methods, each once, in the order of first appearance.
+    fn stage_names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for stage in self.methods.iter().flat_map(|method| &method.stages) {
+            if !names.contains(&stage.name.as_str()) {
+                names.push(&stage.name);
+            }
+        }
+        names
+    }
+}
+
+fn stage_ms(method: &Method, name: &str) -> String {
+    let stage = method.stages.iter().find(|stage| stage.name == name);
+    stage.map_or(String::new(), |stage| stage.median_ms.to_string())
+}
+
+type Cell = fn(&Results, &Method) -> String;
+
+/// Empty for `null`.
+fn optional(value: Option<f64>) -> String {
+    value.map_or(String::new(), |v| v.to_string())
+}
+
+/// `name=value` pairs; strings without quotes.
+fn options(method: &Method) -> String {
+    let pairs = method.options.iter().map(|(name, value)| match value {
+        serde_json::Value::String(text) => format!("{name}={text}"),
+        other => format!("{name}={other}"),
+    });
+    pairs.collect::<Vec<_>>().join(";")
+}
+
+/// The columns before the stages.
+const SCALARS: &[(&str, Cell)] = &[
+    ("device", |r, _| r.device.name.clone()),
+    ("scene", |r, _| r.scene.name.clone()),
+    ("objects", |r, _| r.scene.objects.to_string()),
+    ("path", |r, _| r.path.clone()),
+    ("speed", |r, _| r.speed.to_string()),
+    ("seed", |r, _| r.seed.to_string()),
+    ("width", |r, _| r.size[0].to_string()),
+    ("height", |r, _| r.size[1].to_string()),
+    ("frames", |r, _| r.frames.to_string()),
+    ("label", |_, m| m.label.clone()),
+    ("method", |_, m| m.method.clone()),
+    ("options", |_, m| options(m)),
+    ("guarantee", |_, m| m.guarantee.clone()),
+    ("frame_ms_median", |_, m| m.frame_ms.median.to_string()),
+    ("frame_ms_p95", |_, m| m.frame_ms.p95.to_string()),
+    ("frame_ms_mean", |_, m| m.frame_ms.mean.to_string()),
+    ("host_ms", |_, m| optional(m.host_ms)),
+    ("false_negatives", |_, m| m.false_negatives.to_string()),
+    ("false_negative_frames", |_, m| m.false_negative_frames.to_string()),
+    ("object_error_percent", |_, m| m.object_error_percent.to_string()),
+    ("differing_pixels_mean", |_, m| m.differing_pixels_mean.to_string()),
+    ("tied_pixels_mean", |_, m| m.tied_pixels_mean.to_string()),
+    ("psnr_mean_db", |_, m| optional(m.psnr_mean_db)),
+    ("psnr_worst_db", |_, m| optional(m.psnr_worst_db)),
+    ("ssim_mean", |_, m| m.ssim_mean.to_string()),
+    ("drawn_mean", |_, m| m.drawn_mean.to_string()),
+    ("culled_over_total", |_, m| m.culled_over_total.to_string()),
+    ("culled_over_ref", |_, m| m.culled_over_ref.to_string()),
+    ("triangles_mean", |_, m| m.triangles_mean.to_string()),
+    ("draws_mean", |_, m| m.draws_mean.to_string()),
+    ("overdraw_mean", |_, m| optional(m.overdraw_mean)),
+    ("queries_mean", |_, m| m.queries_mean.to_string()),
+    ("rays_mean", |_, m| m.rays_mean.to_string()),
+    ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
+];
