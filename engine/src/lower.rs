@@ -121,8 +121,9 @@ impl Recording<'_> {
         match op {
             Op::Dispatch { stage, groups } => {
                 self.bind(stage, None)?;
+                let [x, y] = folded(*groups);
                 // SAFETY: pipeline, descriptors and push constants are bound.
-                unsafe { device.cmd_dispatch(self.commands, *groups, 1, 1) };
+                unsafe { device.cmd_dispatch(self.commands, x, y, 1) };
             }
             Op::DispatchIndirect { stage, groups } => {
                 self.bind(stage, None)?;
@@ -180,9 +181,9 @@ impl Recording<'_> {
     fn rendering(&self, target: &Target, load: vk::AttachmentLoadOp, inside: impl FnOnce()) {
         let [width, height] = target.size;
         let area = vk::Rect2D { offset: vk::Offset2D { x: 0, y: 0 }, extent: vk::Extent2D { width, height } };
-        let attachment = |view: Option<u64>, clear: vk::ClearValue| {
+        let attachment = |view: u64, clear: vk::ClearValue| {
             vk::RenderingAttachmentInfo::default()
-                .image_view(view.map_or(vk::ImageView::null(), vk::ImageView::from_raw))
+                .image_view(vk::ImageView::from_raw(view))
                 .image_layout(vk::ImageLayout::GENERAL)
                 .load_op(load)
                 .store_op(vk::AttachmentStoreOp::STORE)
@@ -191,11 +192,13 @@ impl Recording<'_> {
         let black = vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } };
         let nothing = vk::ClearValue { color: vk::ClearColorValue { uint32: [shaders::types::ITEM_NONE; 4] } };
         let far = vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil: 0 } };
-        let colours = [
-            attachment(target.colour.map(|(image, _)| image.view), black),
-            attachment(target.item.map(|image| image.view), nothing),
-        ];
-        let depth = attachment(Some(target.depth.view), far);
+        let colours: Vec<_> = target
+            .colour
+            .map(|(image, _)| attachment(image.view, black))
+            .into_iter()
+            .chain(target.item.map(|image| attachment(image.view, nothing)))
+            .collect();
+        let depth = attachment(target.depth.view, far);
         let info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colours).depth_attachment(&depth);
         let device = &self.vulkan.device;
         let viewport = [vk::Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, min_depth: 0.0, max_depth: 1.0 }];
@@ -271,6 +274,15 @@ fn range(bound: &Bound) -> (vk::Buffer, u64, u64) {
     }
 }
 
+/// Groups that every device can run in one dimension of a grid.
+const MOST_GROUPS: u32 = 65_535;
+
+/// A grid of at least `groups`, in two dimensions; shaders unfold it (`include/grid.glsl`).
+fn folded(groups: u32) -> [u32; 2] {
+    let rows = groups.div_ceil(MOST_GROUPS);
+    [groups.div_ceil(rows.max(1)), rows]
+}
+
 /// The Vulkan stages and write accesses of a point.
 fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
     use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stage};
@@ -316,3 +328,16 @@ pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statist
     Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
 }
 
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folded_grids_cover_every_group_within_the_limit() {
+        for groups in [1, 64, 65_535, 65_536, 156_250, 4_000_000_000] {
+            let [x, y] = folded(groups);
+            assert!(x <= MOST_GROUPS && u64::from(x) * u64::from(y) >= u64::from(groups), "{groups}: {x}x{y}");
+        }
+    }
+}

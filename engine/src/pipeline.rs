@@ -222,11 +222,9 @@ fn draw_pipeline(
     first(unsafe { device.create_graphics_pipelines(cache, &create, None) }, "vkCreateGraphicsPipelines")
 }
 
-/// Colour first, then the item buffer; a place without an image is undefined, and what is written there is dropped.
-pub(crate) fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
-    let colour = state.colour.map_or(vk::Format::UNDEFINED, Format::vulkan);
-    let item = if state.item { Format::Item.vulkan() } else { vk::Format::UNDEFINED };
-    vec![colour, item]
+/// Colour first, then the item buffer.
+fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
+    state.colour.into_iter().chain(state.item.then_some(Format::Item)).map(Format::vulkan).collect()
 }
 
 fn vertex_layout(info: &StageInfo) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {

@@ -4,7 +4,7 @@
 //! done, and charges it to whoever flushes it; there a full barrier after each timestamp splits the stages properly.
 
 use crate::gpu::{lock, Gpu, Vulkan};
-use crate::{error::Named, Buffer, Placement, Result};
+use crate::{error::Named, Buffer, Format, Image, IndexedIndirect, Placement, Primitives, Result, Target};
 use ash::vk;
 use std::fmt;
 use std::sync::Mutex;
@@ -82,27 +82,44 @@ impl QueryStore {
     }
 }
 
-/// Words that the heavy half of the self-check fills.
-const CHECK_WORDS: usize = 4 << 20;
+/// Side of the picture that the self-check's heavy half fills, in pixels.
+const CHECK_PX: u32 = 512;
 
-/// Does the device charge work to the stage that asked for it? A heavy stage and a light one are timed together with plain
-/// timestamps: if the light one gets more than a fifth of the time, they are not kept apart.
+/// Does the device charge work to the stage that asked for it? A heavy drawing and a light dispatch are timed together with
+/// plain timestamps: if the light one gets more than a fifth of the time, they are not kept apart. (Drawing, because
+/// lavapipe runs dispatches at once and puts drawings off.)
 pub(crate) fn self_check(gpu: &Gpu) -> Result<TimerMode> {
     if gpu.info().is_some_and(|info| info.timestamp_ns == 0.0) {
         return Ok(TimerMode::Split);
     }
-    let words = Buffer::<u32>::new(gpu, "engine.timer_check", CHECK_WORDS, Placement::Storage)?;
+    let size = [CHECK_PX; 2];
+    let colour = Image::new(gpu, "engine.timer_check.colour", Format::Colour, size)?;
+    let depth = Image::new(gpu, "engine.timer_check.depth", Format::Depth, size)?;
+    let target = Target { size, colour: Some((colour.view(), Format::Colour)), item: None, depth: depth.view() };
+    let words = Buffer::<u32>::new(gpu, "engine.timer_check.words", 64, Placement::Storage)?;
+    let corners = Buffer::with_data(gpu, "engine.timer_check.corners", &[0u32, 1, 2], Placement::Storage)?;
+    let command = shaders::types::DrawCommand { index_count: 3, instance_count: 1, ..Default::default() };
+    let commands = Buffer::with_data(gpu, "engine.timer_check.commands", &[command], Placement::Storage)?;
+    let draw = IndexedIndirect {
+        vertices: corners.all().into(),
+        indices: corners.all().into(),
+        commands: commands.all().into(),
+        count: None,
+        max_draws: 1,
+        primitives: Primitives::Triangles,
+    };
     let mut shares = Vec::new();
     for _ in 0..3 {
         let mut frame = gpu.frame();
         frame.timer_mode(TimerMode::Plain);
-        frame.dispatch(shaders::engine::SpinWords { words: words.all(), word_count: CHECK_WORDS as u32 }, CHECK_WORDS as u32);
-        frame.part("light");
-        frame.dispatch(shaders::engine::SpinWords { words: words.all(), word_count: 1 }, 1);
+        frame.clear(&target);
+        frame.draw(shaders::engine::SpinPixels {}, draw, &target);
+        frame.dispatch(shaders::engine::SpinWords { words: words.all(), word_count: 64 }, 64);
         let report = frame.finish()?;
         let total: f64 = report.stages.iter().map(|stage| stage.ms).sum();
         shares.push(report.stages.last().map_or(1.0, |light| light.ms) / total.max(1e-9));
     }
     shares.sort_by(f64::total_cmp);
+    tracing::debug!(?shares, "timer self-check: share of the light stage");
     Ok(if shares[1] < 0.2 { TimerMode::Plain } else { TimerMode::Split })
 }

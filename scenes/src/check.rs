@@ -35,20 +35,12 @@ impl Scene {
     }
 
     fn check_sizes(&self) -> Result<(), SceneError> {
-        let vertices: u64 = self.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum();
-        let indices: u64 = self.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum();
-        let totals = [
-            ("objects", self.objects.len() as u64, MOST_OBJECTS as u64),
-            ("vertices", vertices, u64::from(u32::MAX)),
-            ("indices", indices, u64::from(u32::MAX)),
-        ];
-        for (what, count, limit) in totals {
-            if count > limit {
-                let fault = format!("it has {count} {what}, more than the {limit} that can be addressed; try a smaller --scale");
-                return Err(SceneError::TooLarge { scene: self.name.clone(), fault });
-            }
+        let vertices = self.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum();
+        let indices = self.meshes.iter().map(|mesh| mesh.indices.len() as u64).sum();
+        match size_fault(self.objects.len() as u64, vertices, indices) {
+            Some(fault) => Err(SceneError::TooLarge { scene: self.name.clone(), fault }),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn check_motion(&self) -> Result<(), SceneError> {
@@ -81,6 +73,16 @@ impl Scene {
         };
         self.objects.iter().filter_map(|object| self.meshes.get(object.mesh as usize)).map(of_mesh).sum()
     }
+}
+
+fn size_fault(objects: u64, vertices: u64, indices: u64) -> Option<String> {
+    let totals = [
+        ("objects", objects, MOST_OBJECTS as u64),
+        ("vertices", vertices, u64::from(u32::MAX)),
+        ("indices", indices, u64::from(u32::MAX)),
+    ];
+    let (what, count, limit) = totals.into_iter().find(|(_, count, limit)| count > limit)?;
+    Some(format!("it has {count} {what}, more than the {limit} that can be addressed; try a smaller --scale"))
 }
 
 fn mesh_fault(mesh: &Mesh) -> Option<String> {
@@ -209,8 +211,12 @@ mod tests {
     }
 
     #[test]
-    fn too_many_objects_are_refused() {
-        let message = fault(|scene| scene.objects = vec![scene.objects[0].clone(); MOST_OBJECTS + 1]);
-        assert!(message.contains("16777217 objects"), "{message}");
+    fn too_large_scenes_are_refused() {
+        let most = u64::from(u32::MAX);
+        assert_eq!(size_fault(1 << 24, most, most), None);
+        let fault = |objects, vertices, indices| size_fault(objects, vertices, indices).unwrap_or_default();
+        assert!(fault((1 << 24) + 1, 0, 0).contains("16777217 objects"));
+        assert!(fault(0, most + 1, 0).contains("4294967296 vertices"));
+        assert!(fault(0, 0, most + 1).contains("4294967296 indices"));
     }
 }

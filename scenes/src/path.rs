@@ -4,15 +4,17 @@
 //! makes the way longer, so 16 times the speed is 16 times the motion from frame to frame.
 
 mod recorded;
+mod street;
 mod viewpoint;
 mod way;
 
 pub use recorded::record;
 
 use crate::animation::Motion;
+use crate::bounds::WorldBounds;
 use crate::camera::{Pose, Projection};
 use crate::error::SceneError;
-use crate::model::Scene;
+use crate::model::{Aabb, Scene};
 use glam::{DQuat, DVec3};
 use recorded::Recording;
 use std::f64::consts::TAU;
@@ -254,16 +256,19 @@ fn animated_camera(scene: &Scene) -> Option<(usize, usize)> {
 }
 
 fn walk_of(scene: &Scene, base: &Viewpoint) -> Course {
-    match scene.walk.as_ref().and_then(Way::new) {
-        Some(way) => Course::Along(way),
-        None if scene.cameras.is_empty() => Course::Around { centre: scene_centre(scene) },
-        None => Course::Forward { metres: 0.25 * base.reach },
+    if let Some(way) = scene.walk.as_ref().and_then(Way::new) {
+        return Course::Along(way);
     }
-}
-
-fn scene_centre(scene: &Scene) -> DVec3 {
-    let bounds = scene.bounds();
-    if bounds.is_valid() { bounds.centre() } else { DVec3::ZERO }
+    if !scene.cameras.is_empty() {
+        return Course::Forward { metres: 0.25 * base.reach };
+    }
+    let bounds = WorldBounds::new(scene);
+    let boxes: Vec<Aabb> = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
+    let all = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+    match street::through(&boxes, &all).as_ref().and_then(Way::new) {
+        Some(way) => Course::Along(way),
+        None => Course::Around { centre: if all.is_valid() { all.centre() } else { DVec3::ZERO } },
+    }
 }
 
 /// The pose turned by a part of a full turn about the vertical through `centre`.

@@ -5,9 +5,9 @@
 use super::types;
 use crate::contract::*;
 
-/// Every drawn object, Lambert-shaded, with early fragment tests; the item buffer where the target has one.
+/// Every drawn object, Lambert-shaded, with early fragment tests.
 ///
-/// The colour, and who owns the pixel. Occluded fragments stop before this shader.
+/// The colour. Occluded fragments stop before this shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Objects {
     /// `objects` in GLSL.
@@ -37,7 +37,7 @@ impl Stage for Objects {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
-        outputs: &[0, 1],
+        outputs: &[0],
     };
 
     fn bind(&self) -> BoundStage {
@@ -73,6 +73,76 @@ const _: () = {
     assert!(std::mem::offset_of!(ObjectsVertex, position) == 0);
     assert!(std::mem::offset_of!(ObjectsVertex, normal_snorm16) == 12);
     assert!(size_of::<ObjectsVertex>() == 16);
+};
+
+/// Draw/objects with the item buffer beside the colour. For the truth and for methods that need it.
+///
+/// The colour, and who owns the pixel. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectsAndItems {
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for ObjectsAndItems {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/objects_and_items",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/objects_and_items.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/objects_and_items.frag.spv") },
+        ],
+        bindings: &[BindingInfo {
+            name: "objects",
+            binding: 0,
+            kind: BindingKind::StorageBuffer,
+            access: Access::Read,
+        }],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+        ],
+        vertex_stride: 16,
+        outputs: &[0, 1],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ObjectsAndItemsPush { view: self.view };
+        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl GraphicsStage for ObjectsAndItems {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ObjectsAndItemsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndItemsPush, view) == 0);
+    assert!(size_of::<ObjectsAndItemsPush>() == 88);
+};
+
+/// One vertex of [`ObjectsAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsAndItemsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral.
+    pub normal_snorm16: [i16; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndItemsVertex, position) == 0);
+    assert!(std::mem::offset_of!(ObjectsAndItemsVertex, normal_snorm16) == 12);
+    assert!(size_of::<ObjectsAndItemsVertex>() == 16);
 };
 
 /// One count a shaded fragment, added up. For pictures, never in timed frames.

@@ -4,6 +4,35 @@
 
 use crate::contract::*;
 
+/// A triangle over the whole target, for the timer's self-check.
+///
+/// Work of a known size a pixel, for the timer's self-check.
+#[derive(Clone, Copy, Debug)]
+pub struct SpinPixels {}
+
+impl Stage for SpinPixels {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "engine/spin_pixels",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/engine/spin_pixels.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/engine/spin_pixels.frag.spv") },
+        ],
+        bindings: &[],
+        push_size: 0,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        BoundStage::new(Self::INFO, vec![], &[], vec![])
+    }
+}
+
+impl GraphicsStage for SpinPixels {}
+
 /// Work of a known size, for the timer's self-check. No twin: its result is not used.
 #[derive(Clone, Copy, Debug)]
 pub struct SpinWords {

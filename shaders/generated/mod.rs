@@ -15,7 +15,9 @@ use crate::contract::{Stage, StageInfo};
 /// What is fixed about each stage, by name.
 pub const STAGES: &[&StageInfo] = &[
     <draw::Objects as Stage>::INFO,
+    <draw::ObjectsAndItems as Stage>::INFO,
     <draw::Overdraw as Stage>::INFO,
+    <engine::SpinPixels as Stage>::INFO,
     <engine::SpinWords as Stage>::INFO,
     <frustum::TestBounds as Stage>::INFO,
     <hzb::ReduceDepth as Stage>::INFO,

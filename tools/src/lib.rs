@@ -1,1 +1,11 @@
-//! x
+//! The `sightline` program as a library: sessions, truth, metrics, results, and the commands.
+
+pub mod files;
+pub mod metrics;
+pub mod png_out;
+pub mod results;
+pub mod run;
+pub mod session;
+pub mod stats;
+pub mod targets;
+pub mod truth;

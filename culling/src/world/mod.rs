@@ -198,6 +198,8 @@ impl World {
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
         if matches!(target.colour, Some((_, engine::Format::Heat))) {
             f.draw(draw::Overdraw { objects, view: view.gpu() }, draw, target);
+        } else if target.item.is_some() {
+            f.draw(draw::ObjectsAndItems { objects, view: view.gpu() }, draw, target);
         } else {
             f.draw(draw::Objects { objects, view: view.gpu() }, draw, target);
         }

@@ -10,7 +10,7 @@ const FOV_Y: f64 = 60.0 * std::f64::consts::PI / 180.0;
 /// The near plane of derived cameras, in radii of the scene.
 const NEAR: f64 = 5e-4;
 /// Where `closing-in` starts, in radii of the scene from its middle.
-const FAR_OUTSIDE: f64 = 4.0;
+const FAR_OUTSIDE: f64 = 2.5;
 
 /// The place that the standard paths start from.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +30,12 @@ impl Viewpoint {
     pub(super) fn of(scene: &Scene, camera: usize) -> Self {
         let bounds = scene.bounds();
         let bounds = if bounds.is_valid() { bounds } else { Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE } };
-        let radius = bounds.half_extent().length().max(f64::MIN_POSITIVE.sqrt());
-        let radius = if bounds.min == bounds.max { 1.0 } else { radius };
+        // A scene of one point, or none, is looked at as if it were a cube of 2 m.
+        let bounds = match bounds.min == bounds.max {
+            true => Aabb { min: bounds.min - DVec3::ONE, max: bounds.max + DVec3::ONE },
+            false => bounds,
+        };
+        let radius = bounds.half_extent().length();
         match scene.cameras.get(camera) {
             Some(camera) => {
                 let forward = camera.pose.forward();
@@ -58,12 +62,12 @@ impl Viewpoint {
         let half = bounds.half_extent();
         let flatness = 1.0 - (half.y / half.x.max(half.z).max(f64::MIN_POSITIVE)).min(1.0);
         let direction = DVec3::new(0.6, 0.35 + 0.45 * flatness, 1.0).normalize();
-        let distance = radius / (0.5 * FOV_Y).sin();
+        let distance = fitting_distance(bounds, direction);
         let pose = Pose::looking_at(centre + direction * distance, centre);
         Viewpoint {
             pose,
             projection: Projection::Perspective { fov_y: FOV_Y, near: NEAR * radius, far: Some(distance + 1.5 * radius) },
-            outside: Pose::looking_at(centre + direction * (FAR_OUTSIDE * radius), centre),
+            outside: Pose::looking_at(centre + direction * (distance + FAR_OUTSIDE * radius), centre),
             reach: radius,
             clearance: 0.5 * radius,
         }
@@ -88,6 +92,21 @@ impl Viewpoint {
         };
         Shot { pose: Pose { position, rotation }, projection, seconds }
     }
+}
+
+/// How far from the middle of a box a derived camera sees all of it in pictures of 4:3 and wider, looking against `direction`.
+fn fitting_distance(bounds: &Aabb, direction: DVec3) -> f64 {
+    let (centre, half) = (bounds.centre(), bounds.half_extent());
+    let from_view = Pose::looking_at(centre + direction, centre).rotation;
+    let tangent = (0.5 * FOV_Y).tan();
+    let corners = (0..8).map(|corner| {
+        let side = |axis: i32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        let seen = from_view.inverse() * (half * DVec3::new(side(0), side(1), side(2)));
+        // In front of the corner by as much as it lies beside or above the middle, and by some more to keep off the near plane.
+        let beside = (seen.x.abs() / (tangent * 4.0 / 3.0)).max(seen.y.abs() / tangent);
+        seen.z + beside.max(0.2 * half.length())
+    });
+    1.05 * corners.fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// From `from` to `to` along the shorter arc, exactly `to` at 1.

@@ -2,6 +2,7 @@
 // 29.6.4), done in clip space so that perspective, parallel and oblique projections are one case. Twin: culling/src/frustum/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
 #include "cull.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,7 +11,7 @@ layout(set = 0, binding = 1, scalar) writeonly buffer Kept { uint items[]; } kep
 layout(push_constant, scalar) uniform Push { CullView view; uint object_count; } push;
 
 void main() {
-    uint object = gl_GlobalInvocationID.x;
+    uint object = invocation_index();
     if (object >= push.object_count) return;
     Bounds bound = bounds.items[object];
     bool outside = false;

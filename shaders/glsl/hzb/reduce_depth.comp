@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "grid.glsl"
 #include "types.glsl"
 
 layout(local_size_x = 64) in;
@@ -18,7 +19,7 @@ float source_depth(uvec2 texel) {
 #include "reduce.glsl"
 
 void main() {
-    uint tile = gl_GlobalInvocationID.x;
+    uint tile = invocation_index();
     if (tile >= push.tiles.x * push.tiles.y) return;
     reduce_tile(REDUCED_LEVELS, uvec2(tile % push.tiles.x, tile / push.tiles.x));
 }

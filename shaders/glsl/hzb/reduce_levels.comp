@@ -1,6 +1,7 @@
 // hzb/reduce_levels: three coarser levels of the farthest-depth pyramid from the one below. Twin: culling/src/hzb/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
 #include "types.glsl"
 
 layout(local_size_x = 64) in;
@@ -17,7 +18,7 @@ float source_depth(uvec2 texel) {
 #include "reduce.glsl"
 
 void main() {
-    uint tile = gl_GlobalInvocationID.x;
+    uint tile = invocation_index();
     if (tile >= push.tiles.x * push.tiles.y) return;
     reduce_tile(push.source_level + REDUCED_LEVELS, uvec2(tile % push.tiles.x, tile / push.tiles.x));
 }

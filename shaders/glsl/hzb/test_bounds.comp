@@ -2,6 +2,7 @@
 // are drawn first in the next frame (Haar & Aaltonen 2015). Twin: culling/src/hzb/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
 #include "footprint.glsl"
 #include "pyramid.glsl"
 
@@ -42,7 +43,7 @@ bool is_visible(Bounds bound) {
 }
 
 void main() {
-    uint object = gl_GlobalInvocationID.x;
+    uint object = invocation_index();
     if (object >= push.object_count) return;
     bool visible = is_visible(bounds.items[object]);
     newly.items[object] = visible && seen.items[object] == 0u ? 1u : 0u;

@@ -2,6 +2,7 @@
 // III.6.1, figure 11). Twin: culling/src/pack/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
 #include "types.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,7 +11,7 @@ layout(set = 0, binding = 1, scalar) writeonly buffer Counts { uint items[]; } c
 layout(push_constant, scalar) uniform Push { uint first_object; uint object_count; } push;
 
 void main() {
-    uint chunk = gl_GlobalInvocationID.x;
+    uint chunk = invocation_index();
     uint first = chunk * PACK_CHUNK;
     if (first >= push.object_count) return;
     uint end = min(first + PACK_CHUNK, push.object_count);

@@ -2,6 +2,7 @@
 // Twin: culling/src/world/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
 #include "types.glsl"
 
 layout(local_size_x = 64) in;
@@ -11,7 +12,7 @@ layout(set = 0, binding = 2, scalar) writeonly buffer AllBounds { Bounds items[]
 layout(push_constant, scalar) uniform Push { uint move_count; } push;
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = invocation_index();
     if (index >= push.move_count) return;
     MovedObject moved = moves.items[index];
     objects.items[moved.index] = moved.object;

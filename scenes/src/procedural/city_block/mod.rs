@@ -75,7 +75,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
 impl Builder {
     /// The land around and under the city.
     fn plain(&mut self, width: f64, depth: f64) {
-        let size = DVec3::new(width + 600.0, 1.0, depth + 600.0);
+        let size = DVec3::new(width + 200.0, 1.0, depth + 200.0);
         self.assembly.place(self.meshes.tile, [0.33, 0.36, 0.28], sized(DVec3::new(0.0, -0.3, 0.0), size));
     }
 }

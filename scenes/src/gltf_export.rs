@@ -1,0 +1,203 @@
+//! Writes any scene, with a camera path, as one .glb file.
+//!
+//! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, alpha modes, and cameras
+//! up to the rounding of their rotation. Lost or changed:
+//! - A mesh that is used in several colours comes back as one mesh for each colour: in glTF the mesh holds its material.
+//! - Objects whose mesh is empty come back as nothing: glTF has no empty meshes.
+//! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
+//!   motion, skew is lost.
+//! - The path is the animated camera `path`, 30 keys a second, in `f32`, with the field of view of its first frame.
+//! - The walk is not written.
+//!
+//! Skewed and flat matrices are beyond the letter of glTF, which wants matrices made of translation, rotation and scale.
+
+mod binary;
+mod motion;
+
+use crate::camera::Projection;
+use crate::error::SceneError;
+use crate::model::{Mesh, Object, Scene, Topology};
+use crate::path::CameraPath;
+use binary::Binary;
+use glam::DAffine3;
+use serde_json::{json, Value};
+use std::collections::HashMap;
+
+/// The scene, and the path sampled at `frames` frames as an animated camera, which is the file's first. Without a path, the
+/// motion of one run of ten seconds, or from first key to last, is written.
+///
+/// # Errors
+/// A scene that fails [`Scene::check`], a camera that glTF cannot express, or more than 4 GiB of data.
+pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Result<Vec<u8>, SceneError> {
+    scene.check()?;
+    let mut export = Export::default();
+    export.geometry(&scene.meshes);
+    for object in &scene.objects {
+        export.object(object, &scene.meshes);
+    }
+    export.roots.extend(0..export.nodes.len());
+    let shots = motion::samples(scene, path, frames);
+    if let Some(path) = path {
+        export.path_camera(path, &shots)?;
+    }
+    for camera in &scene.cameras {
+        let node = json!({
+            "name": camera.name,
+            "translation": camera.pose.position.to_array(),
+            "rotation": camera.pose.rotation.to_array(),
+        });
+        export.camera(&camera.name, &camera.projection, node)?;
+    }
+    export.object_motion(scene, &shots);
+    export.finish(&scene.name)
+}
+
+/// A glTF document in the making.
+#[derive(Default)]
+struct Export {
+    binary: Binary,
+    nodes: Vec<Value>,
+    /// Nodes without a parent.
+    roots: Vec<usize>,
+    meshes: Vec<Value>,
+    materials: Vec<Value>,
+    cameras: Vec<Value>,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+    /// The primitive of each scene mesh, without its material; null for empty ones.
+    primitives: Vec<Value>,
+    /// glTF material by colour bits and alpha mode.
+    material_of: HashMap<([u32; 4], &'static str), usize>,
+    /// glTF mesh by scene mesh and material.
+    mesh_of: HashMap<(u32, usize), usize>,
+}
+
+impl Export {
+    fn geometry(&mut self, meshes: &[Mesh]) {
+        for mesh in meshes {
+            if mesh.positions.is_empty() || mesh.indices.is_empty() {
+                self.primitives.push(Value::Null);
+                continue;
+            }
+            let positions = self.binary.positions(&mesh.positions);
+            let normals = self.binary.vectors("VEC3", mesh.normals.iter().map(|normal| normal.to_array()));
+            let indices = self.binary.indices(&mesh.indices);
+            let mode = match mesh.topology {
+                Topology::Points => 0,
+                Topology::Lines => 1,
+                Topology::Triangles => 4,
+            };
+            let attributes = json!({ "POSITION": positions, "NORMAL": normals });
+            self.primitives.push(json!({ "attributes": attributes, "indices": indices, "mode": mode }));
+        }
+    }
+
+    fn object(&mut self, object: &Object, meshes: &[Mesh]) {
+        let mut node = json!({ "name": object.name });
+        if object.world_from_object != DAffine3::IDENTITY {
+            node["matrix"] = matrix(&object.world_from_object);
+        }
+        if !self.primitives[object.mesh as usize].is_null() {
+            let material = self.material(object);
+            node["mesh"] = self.mesh(object.mesh, material, &meshes[object.mesh as usize].name).into();
+        }
+        self.nodes.push(node);
+    }
+
+    fn material(&mut self, object: &Object) -> usize {
+        let mode = match (object.translucent, object.masked) {
+            (true, _) => "BLEND",
+            (false, true) => "MASK",
+            (false, false) => "OPAQUE",
+        };
+        let materials = &mut self.materials;
+        *self.material_of.entry((object.colour.map(f32::to_bits), mode)).or_insert_with(|| {
+            materials.push(json!({
+                "pbrMetallicRoughness": { "baseColorFactor": object.colour.map(f64::from), "metallicFactor": 0.0 },
+                "alphaMode": mode,
+            }));
+            materials.len() - 1
+        })
+    }
+
+    fn mesh(&mut self, mesh: u32, material: usize, name: &str) -> usize {
+        let (meshes, primitives) = (&mut self.meshes, &self.primitives);
+        *self.mesh_of.entry((mesh, material)).or_insert_with(|| {
+            let mut primitive = primitives[mesh as usize].clone();
+            primitive["material"] = material.into();
+            meshes.push(json!({ "name": name, "primitives": [primitive] }));
+            meshes.len() - 1
+        })
+    }
+
+    /// Adds a camera on a node of its own and returns the node.
+    fn camera(&mut self, name: &str, projection: &Projection, mut node: Value) -> Result<usize, SceneError> {
+        let mut camera = match *projection {
+            Projection::Perspective { fov_y, near, far } => {
+                let mut lens = json!({ "yfov": fov_y, "znear": near });
+                if let Some(far) = far {
+                    lens["zfar"] = far.into();
+                }
+                json!({ "type": "perspective", "perspective": lens })
+            }
+            Projection::Orthographic { half_height, near, far } => {
+                let lens = json!({ "xmag": half_height, "ymag": half_height, "znear": near, "zfar": far });
+                json!({ "type": "orthographic", "orthographic": lens })
+            }
+            Projection::Custom(_) => {
+                return Err(SceneError::Unsupported {
+                    path: format!("camera '{name}'").into(),
+                    what: "writing a projection matrix of its own as glTF".into(),
+                    remedy: "; give the camera a perspective or orthographic projection".into(),
+                });
+            }
+        };
+        camera["name"] = name.into();
+        node["camera"] = self.cameras.len().into();
+        self.cameras.push(camera);
+        self.nodes.push(node);
+        self.roots.push(self.nodes.len() - 1);
+        Ok(self.nodes.len() - 1)
+    }
+
+    fn finish(self, name: &str) -> Result<Vec<u8>, SceneError> {
+        let mut document = json!({
+            "asset": { "version": "2.0", "generator": "Sightline" },
+            "scene": 0,
+            "scenes": [{ "name": name, "nodes": self.roots }],
+        });
+        if self.roots.is_empty() {
+            document["scenes"] = json!([{ "name": name }]);
+        }
+        let animations = match self.channels.is_empty() {
+            true => Vec::new(),
+            false => vec![json!({ "name": "motion", "samplers": self.samplers, "channels": self.channels })],
+        };
+        let (accessors, views, bytes) = self.binary.into_parts();
+        let buffers = if bytes.is_empty() { Vec::new() } else { vec![json!({ "byteLength": bytes.len() })] };
+        let lists = [
+            ("nodes", self.nodes),
+            ("meshes", self.meshes),
+            ("materials", self.materials),
+            ("cameras", self.cameras),
+            ("animations", animations),
+            ("accessors", accessors),
+            ("bufferViews", views),
+            ("buffers", buffers),
+        ];
+        // glTF forbids empty lists.
+        for (key, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+            document[key] = Value::Array(list);
+        }
+        binary::container(document.to_string().into_bytes(), bytes).ok_or_else(|| SceneError::TooLarge {
+            scene: name.into(),
+            fault: "it takes more than the 4 GiB of a .glb file; export it at a smaller --scale".into(),
+        })
+    }
+}
+
+/// The 16 numbers of a glTF node's matrix, column by column.
+fn matrix(transform: &DAffine3) -> Value {
+    let [x, y, z, at] = transform.to_cols_array_2d();
+    json!([x[0], x[1], x[2], 0.0, y[0], y[1], y[2], 0.0, z[0], z[1], z[2], 0.0, at[0], at[1], at[2], 1.0])
+}

@@ -1,0 +1,85 @@
+//! The binary chunk of a .glb, with the accessors and views on it.
+
+use glam::Vec3;
+use serde_json::{json, Value};
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+
+/// Data and what describes it. Every element is 4 bytes wide, so all is aligned.
+#[derive(Default)]
+pub(super) struct Binary {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Binary {
+    /// Vertex positions; glTF wants their bounds.
+    pub(super) fn positions(&mut self, positions: &[Vec3]) -> usize {
+        let min = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min).to_array().map(f64::from);
+        let max = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max).to_array().map(f64::from);
+        let accessor = self.vectors("VEC3", positions.iter().map(|position| position.to_array()));
+        (self.accessors[accessor]["min"], self.accessors[accessor]["max"]) = (json!(min), json!(max));
+        accessor
+    }
+
+    /// Vectors of floats; returns the accessor.
+    pub(super) fn vectors<const SIZE: usize>(&mut self, kind: &str, vectors: impl Iterator<Item = [f32; SIZE]>) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend(vectors.flatten().flat_map(f32::to_le_bytes));
+        self.accessor(start, SIZE, FLOAT, kind)
+    }
+
+    /// Key times, ascending; glTF wants their bounds.
+    pub(super) fn times(&mut self, times: &[f32]) -> usize {
+        let accessor = self.vectors("SCALAR", times.iter().map(|&time| [time]));
+        let ends = [times.first(), times.last()].map(|end| end.copied().unwrap_or(0.0));
+        (self.accessors[accessor]["min"], self.accessors[accessor]["max"]) = (json!([ends[0]]), json!([ends[1]]));
+        accessor
+    }
+
+    pub(super) fn indices(&mut self, indices: &[u32]) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
+        self.accessor(start, 1, UNSIGNED_INT, "SCALAR")
+    }
+
+    fn accessor(&mut self, start: usize, size: usize, component: u32, kind: &str) -> usize {
+        let length = self.bytes.len() - start;
+        self.views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": length }));
+        self.accessors.push(json!({
+            "bufferView": self.views.len() - 1,
+            "componentType": component,
+            "count": length / (4 * size),
+            "type": kind,
+        }));
+        self.accessors.len() - 1
+    }
+
+    /// Accessors, views, and the data.
+    pub(super) fn into_parts(self) -> (Vec<Value>, Vec<Value>, Vec<u8>) {
+        (self.accessors, self.views, self.bytes)
+    }
+}
+
+/// A .glb of its two chunks; none if it would pass 4 GiB.
+pub(super) fn container(mut json: Vec<u8>, binary: Vec<u8>) -> Option<Vec<u8>> {
+    // Chunks end on multiples of 4; data does already, text is filled with spaces.
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let binary_chunk = if binary.is_empty() { 0 } else { 8 + binary.len() };
+    let total = u32::try_from(12 + 8 + json.len() + binary_chunk).ok()?;
+    let mut file = Vec::with_capacity(total as usize);
+    file.extend(b"glTF");
+    file.extend(2u32.to_le_bytes());
+    file.extend(total.to_le_bytes());
+    file.extend((json.len() as u32).to_le_bytes());
+    file.extend(b"JSON");
+    file.extend(json);
+    if !binary.is_empty() {
+        file.extend((binary.len() as u32).to_le_bytes());
+        file.extend(b"BIN\0");
+        file.extend(binary);
+    }
+    Some(file)
+}

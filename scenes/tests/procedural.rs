@@ -1,0 +1,193 @@
+//! Laws of scenes: what holds for every procedural scene, seed and scale.
+
+mod support;
+
+use glam::DVec3;
+use scenes::procedural::SCENES;
+use scenes::{open, Aabb, CameraPath, Motion, Scene, SceneError, SceneOptions, WorldBounds};
+use std::collections::HashSet;
+use support::ItemBuffer;
+
+fn make(name: &str, scale: f64, seed: u64) -> Scene {
+    open(name, &SceneOptions { scale, seed }).expect("a procedural scene opens")
+}
+
+/// Each vertex as the GPU turns it: see `clip_from_object` in shaders/glsl/include/transform.glsl.
+fn gpu_vertices(scene: &Scene, object: usize) -> impl Iterator<Item = DVec3> + '_ {
+    let object = &scene.objects[object];
+    let columns = object.world_from_object.matrix3.as_mat3();
+    let turned = move |p: &glam::Vec3| columns.x_axis * p.x + columns.y_axis * p.y + columns.z_axis * p.z;
+    let positions = scene.meshes[object.mesh as usize].positions.iter();
+    positions.map(move |position| turned(position).as_dvec3() + object.world_from_object.translation)
+}
+
+#[test]
+fn world_bounds_hold_every_vertex() {
+    for entry in SCENES {
+        let scene = make(entry.name, 0.02, 3);
+        let bounds = WorldBounds::new(&scene);
+        let all = scene.bounds();
+        for (index, object) in scene.objects.iter().enumerate() {
+            let world = bounds.of(object.mesh, &object.world_from_object);
+            assert_eq!(world, scene.world_bounds(index));
+            assert_eq!(all.union(world), all);
+            for vertex in gpu_vertices(&scene, index) {
+                assert!(world.contains(vertex), "{}: '{}' at {vertex} leaves {world:?}", entry.name, object.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_options_give_the_same_scene() {
+    for entry in SCENES {
+        let hash = |scale, seed| make(entry.name, scale, seed).content_hash();
+        assert_eq!(hash(0.1, 1), hash(0.1, 1), "{}", entry.name);
+        assert_ne!(hash(0.1, 1), hash(0.1, 2), "{}: the seed does nothing", entry.name);
+        assert_ne!(hash(0.1, 1), hash(0.2, 1), "{}: the scale does nothing", entry.name);
+    }
+}
+
+#[test]
+fn objects_grow_with_scale() {
+    for (name, standard) in [("city-block", 94_000.0), ("rooms", 4_000.0), ("boxes", 402.0), ("moving-boxes", 402.0)] {
+        for scale in [0.25, 1.0, 2.0] {
+            let count = make(name, scale, 1).objects.len() as f64;
+            assert!((count / (standard * scale) - 1.0).abs() < 0.12, "{name} at {scale}: {count}");
+        }
+    }
+    assert_eq!(make("cb", 1.0, 1).objects.len(), 94_000);
+}
+
+#[test]
+fn the_smallest_scenes_are_still_scenes() {
+    for entry in SCENES {
+        let scene = make(entry.name, 1e-9, 1);
+        assert!((8..400).contains(&scene.objects.len()), "{}: {}", entry.name, scene.objects.len());
+        for name in CameraPath::names(&scene) {
+            let shot = CameraPath::named(&scene, Some(name), 1.0).expect("a path").sample(3, 8);
+            assert!(shot.pose.position.is_finite() && shot.pose.rotation.is_finite());
+        }
+    }
+}
+
+#[test]
+fn the_city_has_ten_to_twenty_five_million_triangles() {
+    let triangles = make("cb", 1.0, 1).triangles();
+    assert!((10_000_000..25_000_000).contains(&triangles), "{triangles}");
+}
+
+#[test]
+fn from_the_street_most_of_the_city_is_hidden() {
+    let city = make("cb", 0.1, 1);
+    let path = CameraPath::named(&city, Some("walk"), 1.0).expect("a walk");
+    for frame in [0, 30, 60] {
+        let picture = ItemBuffer::draw(&city, &path.sample(frame, 61), 320, 180);
+        let visible = picture.visible() as f64 / city.objects.len() as f64;
+        assert!(visible < 0.05, "frame {frame}: {visible}");
+        assert!(picture.visible() > 50 && picture.covered() > 0.6, "frame {frame} shows no city");
+    }
+}
+
+#[test]
+fn rooms_are_closed_but_for_their_doorways() {
+    let rooms = make("rooms", 0.2, 5);
+    let path = CameraPath::named(&rooms, Some("walk"), 4.0).expect("a walk");
+    for frame in 0..12 {
+        let picture = ItemBuffer::draw(&rooms, &path.sample(frame, 12), 160, 90);
+        assert_eq!(picture.covered(), 1.0, "frame {frame} sees out of the house");
+        assert!(picture.visible() < rooms.objects.len() / 5, "frame {frame} sees {}", picture.visible());
+    }
+}
+
+#[test]
+fn walks_meet_no_obstacle() {
+    for (name, scale) in [("city-block", 0.3), ("rooms", 1.0)] {
+        let scene = make(name, scale, 2);
+        let path = CameraPath::named(&scene, Some("walk"), 8.0).expect("a walk");
+        let bounds = WorldBounds::new(&scene);
+        let boxes: Vec<Aabb> = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
+        for frame in 0..200 {
+            let eye = path.sample(frame, 200).pose.position;
+            let hit = boxes.iter().position(|bounds| bounds.contains(eye));
+            // A doorway's box holds its opening.
+            let hit = hit.filter(|&object| !scene.objects[object].name.starts_with("doorway"));
+            assert_eq!(hit.map(|object| &scene.objects[object].name), None, "{name}, frame {frame} at {eye}");
+        }
+    }
+}
+
+#[test]
+fn boxes_have_every_kind_of_transform() {
+    let scene = make("boxes", 1.0, 1);
+    let determinants: Vec<f64> = scene.objects.iter().map(|object| object.world_from_object.matrix3.determinant()).collect();
+    assert!(determinants.iter().filter(|&&determinant| determinant < -1e-6).count() > 10, "reflected");
+    assert!(determinants.iter().filter(|determinant| determinant.abs() < 1e-9).count() > 10, "flat");
+}
+
+#[test]
+fn a_third_of_the_moving_boxes_move_and_nothing_else() {
+    let scene = make("moving-boxes", 1.0, 1);
+    let dynamic: Vec<u32> = (0..scene.objects.len() as u32).filter(|&index| scene.objects[index as usize].dynamic).collect();
+    assert_eq!(dynamic, scene.motion.dynamic_objects());
+    assert!(matches!(scene.motion, Motion::Orbits(_)));
+    assert!((0.3..0.36).contains(&(dynamic.len() as f64 / scene.objects.len() as f64)));
+    let mut now = Vec::new();
+    scene.motion.transforms_at(0.0, &mut now);
+    for &(object, transform) in &now {
+        let placed = scene.objects[object as usize].world_from_object;
+        assert!((transform.translation - placed.translation).length() < 1e-9, "at time 0 objects are where they are placed");
+    }
+    let mut later = Vec::new();
+    scene.motion.transforms_at(1.3, &mut later);
+    let moved: HashSet<u32> = now.iter().zip(&later).filter(|(a, b)| a.1 != b.1).map(|(a, _)| a.0).collect();
+    assert_eq!(moved.len(), dynamic.len());
+}
+
+#[test]
+fn the_hash_sees_every_change_of_a_picture() {
+    let base = make("moving-boxes", 0.1, 1);
+    type Change = fn(&mut Scene);
+    let changes: [Change; 10] = [
+        |scene| scene.meshes[1].positions[2].x += 1e-6,
+        |scene| scene.meshes[1].normals[2] = -scene.meshes[1].normals[2],
+        |scene| scene.meshes[1].indices.swap(0, 1),
+        |scene| scene.objects[4].world_from_object.translation.y += 1e-12,
+        |scene| scene.objects[4].mesh = (scene.objects[4].mesh + 1) % 5,
+        |scene| scene.objects[4].colour[0] += 1e-6,
+        |scene| scene.objects[4].masked = true,
+        |scene| scene.objects.swap(4, 5),
+        |scene| scene.cameras[0].pose.position.x += 1e-9,
+        |scene| match &mut scene.motion {
+            Motion::Orbits(orbits) => orbits[0].bob_period_s += 1e-9,
+            _ => unreachable!("moving boxes orbit"),
+        },
+    ];
+    let hash = base.content_hash();
+    for (index, change) in changes.iter().enumerate() {
+        let mut scene = base.clone();
+        change(&mut scene);
+        assert_ne!(scene.content_hash(), hash, "change {index}");
+    }
+    let mut renamed = base.clone();
+    renamed.objects[4].name = "other".into();
+    assert_eq!(renamed.content_hash(), hash, "names do not show in a picture");
+}
+
+#[test]
+fn errors_say_what_to_do() {
+    let options = SceneOptions::default();
+    let message = |name: &str| open(name, &options).expect_err("there is no such scene").to_string();
+    assert!(message("no-such-scene").contains("city-block, rooms, boxes, moving-boxes"));
+    assert!(message("missing.glb").starts_with("missing.glb: cannot read it"));
+    assert!(message("missing.obj").contains("there is no scene 'missing.obj'"));
+    let file = std::env::temp_dir().join(format!("sightline-{}.obj", std::process::id()));
+    std::fs::write(&file, "v 0 0 0").expect("the file can be written");
+    let message = message(&file.to_string_lossy());
+    std::fs::remove_file(&file).expect("the file can be removed");
+    assert!(message.contains(".obj is not supported; convert it"), "{message}");
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let result = open("boxes", &SceneOptions { scale, seed: 1 });
+        assert!(matches!(result, Err(SceneError::Unknown { .. })), "scale {scale}");
+    }
+}

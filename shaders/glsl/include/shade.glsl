@@ -1,0 +1,44 @@
+// The vertex work of draw/objects and draw/objects_and_items: the same arithmetic, so that both give the same pixels.
+// ITEM_BUFFER adds who owns the pixel.
+#ifndef SHADE_GLSL
+#define SHADE_GLSL
+#include "transform.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 normal_snorm16;    // octahedral
+
+layout(set = 0, binding = 0, scalar) readonly buffer Objects { Object items[]; } objects;
+layout(push_constant, scalar) uniform Push { View view; } push;
+
+layout(location = 0) out vec4 shade;
+#ifdef ITEM_BUFFER
+layout(location = 1) flat out uint item;
+#endif
+
+invariant gl_Position;
+
+vec3 normal_from_octahedron(vec2 folded) {
+    vec3 normal = vec3(folded, 1.0 - abs(folded.x) - abs(folded.y));
+    float fold = max(-normal.z, 0.0);
+    normal.x += normal.x >= 0.0 ? -fold : fold;
+    normal.y += normal.y >= 0.0 ? -fold : fold;
+    return normal;
+}
+
+void main() {
+    Object object = objects.items[gl_InstanceIndex];
+    gl_Position = clip_from_object(object, position, push.view.clip_from_relative, push.view.camera_high, push.view.camera_low);
+    gl_PointSize = 1.0;
+    // Normals turn by the cofactor matrix, which is right for mirrored and flattened transforms too.
+    vec3 local = normal_from_octahedron(normal_snorm16);
+    vec3 normal = cross(object.column_y, object.column_z) * local.x + cross(object.column_z, object.column_x) * local.y
+        + cross(object.column_x, object.column_y) * local.z;
+    float size = length(normal);
+    float lambert = size > 0.0 ? abs(dot(normal, vec3(0.40, 0.82, 0.41))) / size : 1.0;
+    vec4 colour = unpackUnorm4x8(object.colour);
+    shade = vec4(colour.rgb * (0.25 + 0.75 * lambert), colour.a);
+#ifdef ITEM_BUFFER
+    item = uint(gl_InstanceIndex);
+#endif
+}
+#endif
