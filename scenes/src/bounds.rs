@@ -9,10 +9,9 @@ impl Aabb {
 
     /// The smallest box around points; [`Aabb::EMPTY`] if there are none.
     pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, point| Aabb {
-            min: bounds.min.min(point),
-            max: bounds.max.max(point),
-        })
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |bounds, point| Aabb { min: bounds.min.min(point), max: bounds.max.max(point) })
     }
 
     /// The smallest box around both.
@@ -237,10 +236,8 @@ mod tests {
 
     fn any_transform() -> impl Strategy<Value = DAffine3> {
         let number = prop_oneof![-2.0..2.0f64, Just(0.0), Just(1.0), -1e-6..1e-6f64, -1e5..1e5f64, Just(1e-39)];
-        (prop::array::uniform9(number), prop::array::uniform3(-2e6..2e6f64)).prop_map(|(linear, at)| DAffine3 {
-            matrix3: DMat3::from_cols_array(&linear),
-            translation: at.into(),
-        })
+        (prop::array::uniform9(number), prop::array::uniform3(-2e6..2e6f64))
+            .prop_map(|(linear, at)| DAffine3 { matrix3: DMat3::from_cols_array(&linear), translation: at.into() })
     }
 
     fn any_points() -> impl Strategy<Value = Vec<Vec3>> {

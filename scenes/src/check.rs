@@ -120,7 +120,8 @@ fn object_fault(object: &Object, bounds: &WorldBounds) -> Option<String> {
     let linear_fits = object.world_from_object.matrix3.to_cols_array().iter().all(|part| part.abs() <= most);
     let world = bounds.of(object.mesh, &object.world_from_object);
     let fits = world.is_valid() && world.min.abs().max(world.max.abs()).max_element() <= most;
-    (!linear_fits || !fits).then(|| "its transform takes it beyond the range of 32-bit numbers; scale the scene down".into())
+    (!linear_fits || !fits)
+        .then(|| "its transform takes it beyond the range of 32-bit numbers; scale the scene down".into())
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! Writes any scene, with a camera path, as one .glb file.
 //!
 //! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, alpha modes, and cameras
-//! up to the rounding of their rotation. Lost or changed:
+//! up to the rounding of their rotation; the import scales normals to length 1, which may change their last bit. Lost or changed:
 //! - A mesh that is used in several colours comes back as one mesh for each colour: in glTF the mesh holds its material.
 //! - Objects whose mesh is empty come back as nothing: glTF has no empty meshes.
 //! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
 //!   motion, skew is lost.
-//! - The path is the animated camera `path`, 30 keys a second, in `f32`, with the field of view of its first frame.
+//! - The path is the animated camera `path <name>`, 30 keys a second, in `f32`, with the field of view of its first frame.
 //! - The walk is not written.
 //!
 //! Skewed and flat matrices are beyond the letter of glTF, which wants matrices made of translation, rotation and scale.

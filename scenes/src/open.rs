@@ -11,7 +11,9 @@ use std::path::Path;
 /// # Errors
 /// An unknown name, a scale that is not above 0 and finite, a file that cannot be read or is not a good scene.
 pub fn open(name_or_file: &str, options: &SceneOptions) -> Result<Scene, SceneError> {
-    let entry = SCENES.iter().find(|entry| name_or_file == entry.name || (name_or_file == entry.alias && !entry.alias.is_empty()));
+    let entry = SCENES
+        .iter()
+        .find(|entry| name_or_file == entry.name || (name_or_file == entry.alias && !entry.alias.is_empty()));
     let scene = match entry {
         Some(entry) => {
             check_scale(options.scale)?;

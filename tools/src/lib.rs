@@ -1,5 +1,8 @@
 //! The `sightline` program as a library: sessions, truth, metrics, results, and the commands.
 
+pub mod bench;
+pub mod cli;
+pub mod commands;
 pub mod files;
 pub mod metrics;
 pub mod png_out;

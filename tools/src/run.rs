@@ -3,7 +3,7 @@
 use crate::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::session::Session;
 use anyhow::{Context, Result};
-use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, VisibleSets};
+use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets};
 use engine::FrameReport;
 use std::sync::Arc;
 
@@ -25,15 +25,20 @@ pub struct Measured {
     pub error: FrameError,
     /// The draw lists.
     pub drawn: Drawn,
-    /// Fragments shaded, where the device counts them.
-    pub fragments: Option<u64>,
+    /// Fragments that passed the early tests, over the pixels that show something; 0 if none does.
+    pub overdraw: f64,
     /// The pictures.
     pub images: FrameImages,
 }
 
 impl Contender {
     /// Makes a method for a session.
-    pub fn new(session: &Session, entry: &'static Entry, options: Options, visible: &Option<Arc<VisibleSets>>) -> Result<Self> {
+    pub fn new(
+        session: &Session,
+        entry: &'static Entry,
+        options: Options,
+        visible: &Option<Arc<VisibleSets>>,
+    ) -> Result<Self> {
         let before = session.gpu.memory_mib();
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
         let method = (entry.make)(&setup).with_context(|| format!("method '{}'", options.label()))?;
@@ -46,33 +51,47 @@ impl Contender {
         self.options.label()
     }
 
-    /// Runs one frame as it is timed: no item buffer, no statistics.
+    /// Runs one frame as it is timed: without the item buffer.
     pub fn timed(&mut self, session: &mut Session, frame: usize) -> Result<FrameReport> {
-        self.run(session, frame, false)
+        let view = session.look(frame)?;
+        self.run(session, &view, false)
     }
 
     /// Runs one frame with the item buffer on and compares it with the truth.
     pub fn measured(&mut self, session: &mut Session, frame: usize, truth: &Truth) -> Result<Measured> {
-        let report = self.run(session, frame, true)?;
+        let view = session.look(frame)?;
+        let report = self.run(session, &view, true)?;
         let images = session.targets.read()?;
         let drawn = drawn_objects(&session.gpu, &session.world, &report)?;
         let error = compare(truth, &images, &drawn.objects)
             .with_context(|| format!("method '{}', frame {frame}", self.label()))?;
-        Ok(Measured { error, drawn, fragments: report.statistics.map(|counted| counted.fragments), images })
+        let counts = fragment_counts(session, &view, &report)?;
+        let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
+        let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
+        let overdraw = if covered == 0 { 0.0 } else { fragments as f64 / covered as f64 };
+        Ok(Measured { error, drawn, overdraw, images })
     }
 
-    fn run(&mut self, session: &mut Session, frame: usize, measured: bool) -> Result<FrameReport> {
-        let view = session.look(frame)?;
-        self.method.prepare(&session.world, &view)?;
-        let target = if measured { session.targets.with_items() } else { session.targets.timed() };
+    /// Runs one frame through a view, with or without the item buffer.
+    pub fn run(&mut self, session: &Session, view: &View, items: bool) -> Result<FrameReport> {
+        self.method.prepare(&session.world, view)?;
+        let target = if items { session.targets.with_items() } else { session.targets.timed() };
         let before = session.gpu.memory_mib();
         let mut f = session.gpu.frame();
-        if measured {
-            f.count_statistics();
-        }
-        self.method.frame(&mut f, &session.world, &view, &target)?;
+        self.method.frame(&mut f, &session.world, view, &target)?;
         // Some methods make resources when they first see the target's size.
         self.memory_mib += session.gpu.memory_mib() - before;
-        f.finish().with_context(|| format!("method '{}', frame {frame}", self.label()))
+        f.finish().with_context(|| format!("method '{}', frame {}", self.label(), view.frame))
     }
+}
+
+/// Draws a finished frame's lists again, in the same order, and counts how often each pixel is shaded. The device's own
+/// statistics will not do: lavapipe counts fragments that the early tests stop.
+pub fn fragment_counts(session: &mut Session, view: &View, report: &FrameReport) -> Result<Vec<u32>> {
+    let target = session.targets.counting(&session.gpu)?;
+    let mut f = session.gpu.frame();
+    f.clear(&target);
+    session.world.draw_again(&mut f, &report.draws, view, &target);
+    f.finish().context("counting fragments")?;
+    Ok(session.targets.read_counts()?)
 }

@@ -193,6 +193,13 @@ impl World {
         }
     }
 
+    /// Draws the lists of a finished frame once more, in the same order. They must still be as they were.
+    pub fn draw_again(&self, f: &mut Frame, draws: &[IndexedIndirect], view: &View, target: &Target) {
+        for draw in draws {
+            self.draw_indirect(f, *draw, view, target);
+        }
+    }
+
     pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
         let objects = self.objects.all();
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.

@@ -25,7 +25,11 @@ impl Binary {
     }
 
     /// Vectors of floats; returns the accessor.
-    pub(super) fn vectors<const SIZE: usize>(&mut self, kind: &str, vectors: impl Iterator<Item = [f32; SIZE]>) -> usize {
+    pub(super) fn vectors<const SIZE: usize>(
+        &mut self,
+        kind: &str,
+        vectors: impl Iterator<Item = [f32; SIZE]>,
+    ) -> usize {
         let start = self.bytes.len();
         self.bytes.extend(vectors.flatten().flat_map(f32::to_le_bytes));
         self.accessor(start, SIZE, FLOAT, kind)

@@ -67,7 +67,8 @@ impl Export {
                 let pose = |sample: &Sample| {
                     // The object's own matrix stays on its node; this node carries it about, rigidly, so nothing is lost.
                     let angle = (orbit.radians_per_s * sample.seconds) % TAU;
-                    let turn = orbit.axis.try_normalize().map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle));
+                    let turn =
+                        orbit.axis.try_normalize().map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle));
                     let place = orbit.world_from_object(sample.seconds).translation;
                     Pose { position: place - turn * orbit.base.translation, rotation: turn }
                 };

@@ -17,8 +17,10 @@ const FAR_OUTSIDE: f64 = 2.5;
 pub(super) struct Viewpoint {
     pub pose: Pose,
     pub projection: Projection,
-    /// Far outside, looking at the scene: where `closing-in` starts.
-    pub outside: Pose,
+    /// Far outside: where `closing-in` starts.
+    pub outside: DVec3,
+    /// What `closing-in` looks at on its way.
+    pub focus: DVec3,
     /// Radius of the scene in metres.
     pub reach: f64,
     /// How far the camera can move sideways.
@@ -47,13 +49,19 @@ impl Viewpoint {
                 Viewpoint {
                     pose: camera.pose,
                     projection: camera.projection,
-                    outside: Pose::looking_at(start, bounds.centre()),
+                    outside: start,
+                    focus: camera.pose.position + forward * (0.25 * radius),
                     reach: radius,
                     clearance,
                 }
             }
             None => Self::outside(&bounds, radius),
         }
+    }
+
+    /// A viewpoint of which only the pose and the projection are used.
+    pub(super) fn fixed(pose: Pose, projection: Projection) -> Self {
+        Viewpoint { pose, projection, outside: pose.position, focus: pose.position, reach: 1.0, clearance: 1.0 }
     }
 
     fn outside(bounds: &Aabb, radius: f64) -> Self {
@@ -66,8 +74,13 @@ impl Viewpoint {
         let pose = Pose::looking_at(centre + direction * distance, centre);
         Viewpoint {
             pose,
-            projection: Projection::Perspective { fov_y: FOV_Y, near: NEAR * radius, far: Some(distance + 1.5 * radius) },
-            outside: Pose::looking_at(centre + direction * (distance + FAR_OUTSIDE * radius), centre),
+            projection: Projection::Perspective {
+                fov_y: FOV_Y,
+                near: NEAR * radius,
+                far: Some(distance + 1.5 * radius),
+            },
+            outside: centre + direction * (distance + FAR_OUTSIDE * radius),
+            focus: centre,
             reach: radius,
             clearance: 0.5 * radius,
         }
@@ -76,11 +89,12 @@ impl Viewpoint {
     /// From outside (0) to the viewpoint (1). The distance left shrinks by the same factor in each frame, so that things
     /// grow evenly; the far plane moves out with the camera.
     pub(super) fn closing_in(&self, t: f64, seconds: f64) -> Shot {
-        let arm = self.outside.position - self.pose.position;
+        let arm = self.outside - self.pose.position;
         // From the whole way to a hundredth of it evenly; the subtraction takes the last hundredth off.
         let left = (0.01f64.powf(t) - 0.01) / 0.99;
         let position = self.pose.position + arm * left;
-        let rotation = short_way(self.outside.rotation, self.pose.rotation, 1.0 - left);
+        // Towards the focus, and only near the end into the viewpoint's own direction.
+        let rotation = short_way(Pose::looking_at(position, self.focus).rotation, self.pose.rotation, t.powi(4));
         let projection = match self.projection {
             Projection::Perspective { fov_y, near, far } => {
                 Projection::Perspective { fov_y, near, far: far.map(|far| far + arm.length() * left) }

@@ -18,7 +18,11 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let bodies = bodies(&mut assembly);
     // As dense at every scale.
     let side = 20.0 * (count as f64 / BODIES).cbrt();
-    assembly.place(bodies[0], [0.4, 0.42, 0.4], sized(DVec3::new(0.0, -0.6, 0.0), DVec3::new(5.0 * side, 1.0, 5.0 * side)));
+    assembly.place(
+        bodies[0],
+        [0.4, 0.42, 0.4],
+        sized(DVec3::new(0.0, -0.6, 0.0), DVec3::new(5.0 * side, 1.0, 5.0 * side)),
+    );
     let wall = DVec3::new(1.3 * side, 0.75 * side, 0.4);
     assembly.place(bodies[0], [0.65, 0.5, 0.4], sized(DVec3::new(0.0, 0.5 * wall.y - 0.3, 0.0), wall));
     for body in 0..count {
@@ -66,7 +70,8 @@ fn shape(random: &mut Random, body: usize) -> DMat3 {
     if body % 3 == 1 {
         return DMat3::from_diagonal(scale);
     }
-    let skew = if body % 10 == 6 { DMat3::from_cols(DVec3::X, DVec3::new(0.4, 1.0, 0.0), DVec3::Z) } else { DMat3::IDENTITY };
+    let skew =
+        if body % 10 == 6 { DMat3::from_cols(DVec3::X, DVec3::new(0.4, 1.0, 0.0), DVec3::Z) } else { DMat3::IDENTITY };
     DMat3::from_quat(turn) * DMat3::from_diagonal(scale) * skew
 }
 

@@ -56,7 +56,6 @@ impl Furniture {
     }
 }
 
-
 /// A top on four legs.
 fn add_legged(parts: &mut Parts, [width, height, depth]: [f32; 3], leg: f32) {
     let (x, z) = (0.5 * width, 0.5 * depth);
@@ -146,7 +145,9 @@ fn plant() -> Mesh {
     let mut parts = Parts::default();
     parts.cylinder([0.0, 0.0, 0.0], [0.14, 0.19], 0.3, 12);
     parts.cylinder([0.0, 0.25, 0.0], [0.02, 0.015], 0.6, 6);
-    for (x, y, z, size) in [(0.0, 1.0, 0.0, 0.28), (0.18, 0.75, 0.08, 0.2), (-0.15, 0.8, 0.1, 0.2), (0.02, 0.7, -0.17, 0.18)] {
+    for (x, y, z, size) in
+        [(0.0, 1.0, 0.0, 0.28), (0.18, 0.75, 0.08, 0.2), (-0.15, 0.8, 0.1, 0.2), (0.02, 0.7, -0.17, 0.18)]
+    {
         parts.ball([x, y, z], [size, 0.9 * size, size], 5);
     }
     parts.mesh("plant")

@@ -85,9 +85,9 @@ impl Assembly {
     }
 
     /// Places a mesh, opaque, under its own name. The transform is rounded to `f32`: what the GPU draws and what glTF tools
-    /// read is then exactly what is meant.
+    /// read is then exactly what is meant. Zero gets a plus sign, which multiplication by an identity would give it anyway.
     fn place(&mut self, mesh: u32, colour: [f32; 3], world_from_object: DAffine3) {
-        let rounded = world_from_object.to_cols_array().map(|part| f64::from(part as f32));
+        let rounded = world_from_object.to_cols_array().map(|part| f64::from(part as f32) + 0.0);
         self.scene.objects.push(Object {
             name: self.scene.meshes[mesh as usize].name.clone(),
             mesh,

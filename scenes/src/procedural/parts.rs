@@ -83,7 +83,8 @@ impl Parts {
         };
         for ring in 0..rings {
             for side in 0..sides {
-                let corners = [point(ring, side), point(ring, side + 1), point(ring + 1, side + 1), point(ring + 1, side)];
+                let corners =
+                    [point(ring, side), point(ring, side + 1), point(ring + 1, side + 1), point(ring + 1, side)];
                 match ring {
                     0 => self.face(&[corners[0], corners[2], corners[3]]),
                     last if last + 1 == rings => self.face(&[corners[0], corners[1], corners[2]]),
@@ -164,11 +165,15 @@ mod tests {
         let cases: [(&str, Build, f32); 7] = [
             ("cuboid", |parts| parts.cuboid([-1.0, 0.0, -2.0], [1.0, 3.0, 2.0]), 24.0),
             ("tapered", |parts| parts.tapered([-1.0, 0.0, -1.0], [1.0, 3.0, 1.0], 1.0, 1.0), 4.0),
-            ("cylinder", |parts| parts.cylinder([5.0, 1.0, 0.0], [1.0, 1.0], 2.0, 64), 6.28),
-            ("cone", |parts| parts.cylinder([0.0, 1.0, 0.0], [1.0, 0.0], 3.0, 64), 3.14),
+            ("cylinder", |parts| parts.cylinder([5.0, 1.0, 0.0], [1.0, 1.0], 2.0, 64), TAU),
+            ("cone", |parts| parts.cylinder([0.0, 1.0, 0.0], [1.0, 0.0], 3.0, 64), 0.5 * TAU),
             ("gable", |parts| parts.gable([0.0, 0.0, 0.0], [2.0, 1.0, 3.0]), 3.0),
             ("ball", |parts| parts.ball([0.0, 9.0, 0.0], [1.0, 1.0, 1.0], 32), 4.19),
-            ("moved", |parts| parts.moved(Affine3A::from_rotation_x(1.0), |parts| parts.cuboid([0.0; 3], [1.0; 3])), 1.0),
+            (
+                "moved",
+                |parts| parts.moved(Affine3A::from_rotation_x(1.0), |parts| parts.cuboid([0.0; 3], [1.0; 3])),
+                1.0,
+            ),
         ];
         for (name, build, expected) in cases {
             let mut parts = Parts::default();

@@ -45,7 +45,8 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let pairs = ((rooms / (2 * columns) as f64).round() as usize).max(1);
     let mut assembly = Assembly::new("rooms");
     let cube = assembly.mesh(cube());
-    let doorways = [assembly.mesh(doorway("doorway wide", WIDTH as f32)), assembly.mesh(doorway("doorway", DEPTH as f32))];
+    let doorways =
+        [assembly.mesh(doorway("doorway wide", WIDTH as f32)), assembly.mesh(doorway("doorway", DEPTH as f32))];
     let furniture = Furniture::new(&mut assembly);
     let random = Random::new(options.seed, 0);
     let mut builder = Builder { assembly, furniture, cube, doorways, random, columns, pairs };
@@ -241,7 +242,12 @@ impl Builder {
         let is_table = piece == self.furniture.desk || piece == self.furniture.table;
         if is_table {
             let chair = place - DVec3::new(0.0, 0.0, z * (half_depth + 0.25));
-            self.furniture.place(&mut self.assembly, &mut self.random, self.furniture.chair, standing(chair, turns + 2));
+            self.furniture.place(
+                &mut self.assembly,
+                &mut self.random,
+                self.furniture.chair,
+                standing(chair, turns + 2),
+            );
             let vase = place + DVec3::new(-0.45 * x, 0.742, 0.1 * z);
             self.furniture.place(&mut self.assembly, &mut self.random, self.furniture.vase, standing(vase, 0));
         }

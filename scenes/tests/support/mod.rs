@@ -79,7 +79,7 @@ impl ItemBuffer {
         });
         let [a, b, c] = points;
         let area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
-        if !(area.abs() > 1e-12) {
+        if area.is_nan() || area.abs() <= 1e-12 {
             return;
         }
         let range = |values: [f64; 3], end: usize| {
@@ -110,13 +110,7 @@ fn clip_from_world(pose: &Pose, projection: &Projection, aspect: f64) -> DMat4 {
 
 /// All corners are beyond one plane of the view volume.
 fn outside(corners: &[DVec4]) -> bool {
-    let planes: [fn(&DVec4) -> bool; 6] = [
-        |c| c.x > c.w,
-        |c| c.x < -c.w,
-        |c| c.y > c.w,
-        |c| c.y < -c.w,
-        |c| c.z > c.w,
-        |c| c.z < 0.0,
-    ];
+    let planes: [fn(&DVec4) -> bool; 6] =
+        [|c| c.x > c.w, |c| c.x < -c.w, |c| c.y > c.w, |c| c.y < -c.w, |c| c.z > c.w, |c| c.z < 0.0];
     planes.iter().any(|beyond| corners.iter().all(beyond))
 }

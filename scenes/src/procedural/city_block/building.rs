@@ -26,6 +26,8 @@ struct House {
     width: f64,
     depth: f64,
     storeys: usize,
+    /// What it is higher than its storeys need, in metres: else roofs and ledges of neighbours would lie in one plane.
+    rise: f64,
     /// Has a ridged roof, otherwise a flat one.
     gabled: bool,
     walls: [f32; 3],
@@ -33,7 +35,7 @@ struct House {
 
 impl House {
     fn height(&self) -> f64 {
-        self.storeys as f64 * STOREY + 1.2
+        self.storeys as f64 * STOREY + self.rise
     }
 
     /// World from a frame whose origin is at the foot of a side's middle, and whose +z leads out of it.
@@ -79,6 +81,7 @@ impl Builder {
             width: lot_width + 0.2,
             depth,
             storeys,
+            rise: self.random.range(0.9, 1.5),
             gabled,
             walls: shade(&mut self.random, walls, 0.12),
         }
@@ -135,7 +138,15 @@ impl Builder {
         }
     }
 
-    fn windows(&mut self, house: &House, side: i32, storeys: std::ops::Range<usize>, columns: usize, mesh: u32, frame: [f32; 3]) {
+    fn windows(
+        &mut self,
+        house: &House,
+        side: i32,
+        storeys: std::ops::Range<usize>,
+        columns: usize,
+        mesh: u32,
+        frame: [f32; 3],
+    ) {
         let wall = house.side(side);
         let width = if side % 2 == 0 { house.width } else { house.depth };
         for storey in storeys {

@@ -42,7 +42,11 @@ impl Meshes {
             tile: add(tile()),
             shells: [add(banded_shell("shell banded", 4)), add(banded_shell("shell plain", 1)), add(pillared_shell())],
             house: add(house()),
-            windows: [add(window("window", 1.2, 1.5, 2)), add(window("window wide", 1.9, 1.5, 3)), add(window("window tall", 1.1, 2.1, 2))],
+            windows: [
+                add(window("window", 1.2, 1.5, 2)),
+                add(window("window wide", 1.9, 1.5, 3)),
+                add(window("window tall", 1.1, 2.1, 2)),
+            ],
             shop_window: add(window("shop window", 2.6, 2.4, 2)),
             door: add(door()),
             balcony: add(balcony()),
@@ -295,7 +299,10 @@ fn car(name: &str, length: f32, bonnet: f32, height: f32) -> Mesh {
         }
         for z in [-0.6, 0.6] {
             parts.ball([half - 0.02, 0.58, z], [0.07, 0.08, 0.13], 5);
-            parts.cuboid([0.3 * half, bonnet + 0.03, z * 1.45 - 0.06], [0.3 * half + 0.12, bonnet + 0.15, z * 1.45 + 0.06]);
+            parts.cuboid(
+                [0.3 * half, bonnet + 0.03, z * 1.45 - 0.06],
+                [0.3 * half + 0.12, bonnet + 0.15, z * 1.45 + 0.06],
+            );
         }
     })
 }
@@ -303,7 +310,9 @@ fn car(name: &str, length: f32, bonnet: f32, height: f32) -> Mesh {
 fn broad_tree() -> Mesh {
     built("broad tree", |parts| {
         parts.cylinder([0.0, -0.1, 0.0], [0.22, 0.12], 2.6, 12);
-        for (x, y, z, size) in [(0.0, 4.2, 0.0, 1.5), (0.9, 3.4, 0.3, 1.0), (-0.8, 3.5, 0.4, 1.05), (0.1, 3.3, -0.9, 1.0)] {
+        for (x, y, z, size) in
+            [(0.0, 4.2, 0.0, 1.5), (0.9, 3.4, 0.3, 1.0), (-0.8, 3.5, 0.4, 1.05), (0.1, 3.3, -0.9, 1.0)]
+        {
             parts.ball([x, y, z], [size, 0.85 * size, size], 11);
         }
     })

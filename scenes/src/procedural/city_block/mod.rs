@@ -80,10 +80,11 @@ impl Builder {
     }
 }
 
-/// A loop around at most 3 by 3 blocks in the middle of the city, along the middle of the road. It starts 50 m before a corner.
+/// A loop around at most 3 by 3 blocks in the middle of the city, along the middle of the road and not along the city's
+/// edge if there is another street. It starts 50 m before a corner.
 fn street_walk(corner: DVec3, columns: usize, rows: usize) -> Walk {
     let line = |pitch: f64, count: usize| {
-        let around = count.min(3);
+        let around = count.saturating_sub(2).clamp(1, 3);
         let first = (count - around) / 2;
         (first as f64 * pitch - 0.5 * STREET, (first + around) as f64 * pitch - 0.5 * STREET)
     };

@@ -96,13 +96,19 @@ impl Builder {
                 let angle = self.random.range(0.0, 6.0);
                 self.assembly.place(tree, colour, turned(place, angle));
             }
-            let small = [(self.meshes.bench, [0.4, 0.27, 0.15]), (self.meshes.hydrant, [0.65, 0.1, 0.08]), (self.meshes.bin, [0.2, 0.3, 0.22])];
+            let small = [
+                (self.meshes.bench, [0.4, 0.27, 0.15]),
+                (self.meshes.hydrant, [0.65, 0.1, 0.08]),
+                (self.meshes.bin, [0.2, 0.3, 0.22]),
+            ];
             for (slot, (mesh, colour)) in small.into_iter().enumerate() {
                 let x = 19.0 + 20.0 * slot as f64 + self.random.range(-2.0, 2.0);
                 self.stand(mesh, colour, at + DVec3::new(x.min(width - 7.0), PAVEMENT_TOP, z), turns);
             }
         }
-        for (x, z, turns) in [(1.0, depth - 1.0, 0), (width - 1.0, depth - 1.0, 1), (1.0, 1.0, 3), (width - 1.0, 1.0, 2)] {
+        for (x, z, turns) in
+            [(1.0, depth - 1.0, 0), (width - 1.0, depth - 1.0, 1), (1.0, 1.0, 3), (width - 1.0, 1.0, 2)]
+        {
             self.stand(self.meshes.traffic_light, [0.12, 0.14, 0.13], at + DVec3::new(x, PAVEMENT_TOP, z), turns);
         }
         let crossings = [(width - 3.0, depth + 0.5 * STREET, 1), (width + 0.5 * STREET, depth - 3.0, 0)];

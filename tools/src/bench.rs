@@ -1,0 +1,272 @@
+//! The main job: methods × frames, once for the clock and once for the truth, into results.
+
+use crate::metrics::MethodErrors;
+use crate::results::{self, FrameMs, Frames, Results, SCHEMA};
+use crate::run::{Contender, Measured};
+use crate::session::Session;
+use crate::stats;
+use crate::truth::RunTruth;
+use anyhow::{Context, Result};
+use culling::{Entry, Options, VisibleSets};
+use engine::{Capture, FrameReport};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// How a benchmark is run.
+pub struct BenchOptions {
+    /// Methods and their settings, with unique labels.
+    pub methods: Vec<(&'static Entry, Options)>,
+    /// Frames run before the clock starts, and before the truth is asked.
+    pub warmup: usize,
+    /// Measure errors against the truth.
+    pub metrics: bool,
+    /// The frame to capture, if any, with the loaded library.
+    pub capture: Option<(usize, Capture)>,
+    /// Where visible sets are cached.
+    pub cache: Option<PathBuf>,
+    /// What was typed, for the results.
+    pub command: String,
+}
+
+/// Told how far the benchmark is: what it does, steps done, steps in all.
+pub type Progress<'a> = &'a mut dyn FnMut(&str, usize, usize);
+
+/// Everything recorded of one method.
+#[derive(Default)]
+struct Records {
+    timed: Vec<FrameReport>,
+    errors: Vec<crate::metrics::FrameError>,
+    triangles: Vec<u64>,
+    draws: Vec<u64>,
+    overdraw: Vec<f64>,
+}
+
+/// Runs the benchmark.
+pub fn bench(session: &mut Session, mut options: BenchOptions, progress: Progress<'_>) -> Result<Results> {
+    let shared_mib = session.gpu.memory_mib();
+    let truth = make_truth(session, &options, progress)?;
+    let mut contenders = Vec::new();
+    for (entry, settings) in &options.methods {
+        contenders.push(Contender::new(session, entry, settings.clone(), &truth.sets)?);
+    }
+    let mut records: Vec<Records> = contenders.iter().map(|_| Records::default()).collect();
+    time(session, &mut contenders, &mut records, options.warmup, progress)?;
+    if let Some(images) = &truth.run {
+        measure(session, &mut contenders, &mut records, images, &mut options, progress)?;
+    }
+    let methods: Vec<_> =
+        contenders.iter().zip(&records).map(|(contender, records)| method(contender, records, shared_mib)).collect();
+    Ok(results(session, &options, methods))
+}
+
+struct MadeTruth {
+    run: Option<RunTruth>,
+    sets: Option<Arc<VisibleSets>>,
+}
+
+fn make_truth(session: &mut Session, options: &BenchOptions, progress: Progress<'_>) -> Result<MadeTruth> {
+    let (mut done, frames) = (0, session.frames());
+    let mut step = || {
+        done += 1;
+        progress("drawing the truth", done, frames);
+    };
+    if options.metrics {
+        let truth = RunTruth::draw(session, &mut step)?;
+        truth.store(session, options.cache.as_deref());
+        let sets = Some(truth.sets.clone());
+        return Ok(MadeTruth { run: Some(truth), sets });
+    }
+    let needs_sets = options.methods.iter().any(|(entry, _)| entry.id == "ref");
+    let sets = if needs_sets { Some(RunTruth::visible_sets(session, options.cache.as_deref(), &mut step)?) } else { None };
+    Ok(MadeTruth { run: None, sets })
+}
+
+/// Runs the first frames of the path, so that pipelines are compiled and methods have a past when frame 0 comes.
+fn warm_up(session: &mut Session, contenders: &mut [Contender], warmup: usize) -> Result<()> {
+    for contender in contenders.iter_mut() {
+        contender.method.forget()?;
+    }
+    for frame in 0..warmup {
+        for contender in contenders.iter_mut() {
+            contender.timed(session, frame % session.frames())?;
+        }
+    }
+    Ok(())
+}
+
+fn time(
+    session: &mut Session,
+    contenders: &mut [Contender],
+    records: &mut [Records],
+    warmup: usize,
+    progress: Progress<'_>,
+) -> Result<()> {
+    progress("warming up", 0, session.frames());
+    warm_up(session, contenders, warmup)?;
+    for frame in 0..session.frames() {
+        for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
+            records.timed.push(contender.timed(session, frame)?);
+        }
+        progress("timing", frame + 1, session.frames());
+    }
+    Ok(())
+}
+
+fn measure(
+    session: &mut Session,
+    contenders: &mut [Contender],
+    records: &mut [Records],
+    truth: &RunTruth,
+    options: &mut BenchOptions,
+    progress: Progress<'_>,
+) -> Result<()> {
+    warm_up(session, contenders, options.warmup)?;
+    for frame in 0..session.frames() {
+        let truth = truth.frame(session, frame)?;
+        for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
+            let capturing = options.capture.as_mut().filter(|(wanted, _)| *wanted == frame).map(|(_, capture)| capture);
+            let measured = match capturing {
+                None => contender.measured(session, frame, &truth)?,
+                Some(capture) => {
+                    capture.start(&session.gpu)?;
+                    let measured = contender.measured(session, frame, &truth)?;
+                    let file = capture.end(&session.gpu)?;
+                    tracing::info!(method = contender.label(), file = %file.display(), "captured");
+                    measured
+                }
+            };
+            records.push(measured);
+        }
+        progress("measuring errors", frame + 1, session.frames());
+    }
+    Ok(())
+}
+
+impl Records {
+    fn push(&mut self, measured: Measured) {
+        self.triangles.push(measured.drawn.triangles);
+        self.draws.push(measured.drawn.draws);
+        self.overdraw.push(measured.overdraw);
+        self.errors.push(measured.error);
+    }
+}
+
+fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results::Method {
+    let frame_ms: Vec<f64> = records.timed.iter().map(|report| report.frame_ms).collect();
+    let host_ms: Vec<f64> = records.timed.iter().map(|report| report.host_ms).collect();
+    let options = contender.options.all().into_iter().map(|(name, value)| (name, value.into())).collect();
+    let mut method = results::Method {
+        label: contender.label(),
+        method: contender.entry.id.to_owned(),
+        options,
+        guarantee: contender.entry.guarantee.to_string(),
+        frame_ms: FrameMs::from_samples(&frame_ms).unwrap_or_default(),
+        host_ms: stats::median(&host_ms),
+        stages: stages(&records.timed),
+        triangles_mean: mean(&records.triangles),
+        draws_mean: mean(&records.draws),
+        overdraw_mean: stats::mean(&records.overdraw),
+        device_memory_mib: shared_mib + contender.memory_mib,
+        frames: frames(frame_ms, records),
+        ..results::Method::default()
+    };
+    if let Some(errors) = MethodErrors::from_frames(&records.errors) {
+        method.set_errors(&errors);
+    }
+    method
+}
+
+fn mean(values: &[u64]) -> f64 {
+    stats::mean(&values.iter().map(|value| *value as f64).collect::<Vec<_>>()).unwrap_or(0.0)
+}
+
+fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
+    let of = |value: fn(&crate::metrics::FrameError) -> u64| records.errors.iter().map(value).collect::<Vec<_>>();
+    Frames {
+        frame_ms,
+        drawn: of(|error| error.drawn as u64),
+        ref_visible: of(|error| error.ref_visible as u64),
+        false_negatives: of(|error| error.false_negatives as u64),
+        differing_pixels: of(|error| error.differing_pixels as u64),
+        tied_pixels: of(|error| error.tied_pixels as u64),
+        psnr_db: records.errors.iter().map(|error| error.psnr_db).collect(),
+        ssim: records.errors.iter().map(|error| error.ssim).collect(),
+        triangles: records.triangles.clone(),
+        draws: records.draws.clone(),
+        overdraw: records.overdraw.clone(),
+        ..Frames::default()
+    }
+}
+
+/// One row a stage, in the order in which the frame has them. A stage that runs several times in a frame is summed.
+fn stages(reports: &[FrameReport]) -> Vec<results::Stage> {
+    let mut order: Vec<String> = Vec::new();
+    let mut ran: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    let mut skipped: BTreeMap<String, (u32, &'static str)> = BTreeMap::new();
+    for report in reports {
+        let mut frame: BTreeMap<&str, f64> = BTreeMap::new();
+        for stage in &report.stages {
+            *frame.entry(&stage.label).or_default() += stage.ms;
+        }
+        for (label, ms) in frame {
+            ran.entry(label.to_owned()).or_default().push(ms);
+        }
+        for skip in &report.skips {
+            let (count, reason) = skipped.entry(skip.label.clone()).or_insert((0, skip.reason));
+            (*count, *reason) = (*count + 1, skip.reason);
+        }
+        let labels = report.stages.iter().map(|stage| &stage.label).chain(report.skips.iter().map(|skip| &skip.label));
+        for label in labels {
+            if !order.contains(label) {
+                order.push(label.clone());
+            }
+        }
+    }
+    let total: f64 = ran.values().flatten().sum();
+    let row = |name: String| {
+        let samples = ran.get(&name).cloned().unwrap_or_default();
+        let (skipped, reason) = skipped.get(&name).map_or((0, None), |(count, reason)| (*count, Some((*reason).to_owned())));
+        let share = if total > 0.0 { samples.iter().sum::<f64>() / total } else { 0.0 };
+        results::Stage { name, median_ms: stats::median(&samples).unwrap_or(0.0), share, skipped, reason }
+    };
+    order.into_iter().map(row).collect()
+}
+
+fn results(session: &Session, options: &BenchOptions, methods: Vec<results::Method>) -> Results {
+    let info = session.gpu.info();
+    let text = |value: fn(&engine::AdapterInfo) -> String| info.map(value).unwrap_or_default();
+    let given = session.options();
+    Results {
+        schema: SCHEMA,
+        sightline_version: env!("CARGO_PKG_VERSION").to_owned(),
+        command: options.command.clone(),
+        device: results::Device {
+            name: text(|info| info.name.clone()),
+            kind: text(|info| format!("{:?}", info.kind).to_lowercase()),
+            driver: text(|info| info.driver.clone()),
+            api_version: text(|info| info.api.clone()),
+            timer_mode: session.gpu.timer_mode().to_string(),
+            details: BTreeMap::new(),
+        },
+        scene: results::Scene {
+            name: session.scene.name.clone(),
+            objects: session.world.len() as u64,
+            triangles: session.world.triangles(),
+        },
+        path: session.path().describe(),
+        speed: given.speed,
+        seed: given.seed,
+        size: given.size,
+        frames: session.frames() as u32,
+        methods,
+    }
+}
+
+/// Writes results.json and results.csv to a folder, which is made if it is not there.
+pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+    results.write_json(&folder.join("results.json"))?;
+    results.write_csv(&folder.join("results.csv"))?;
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! `sightline bench`.
+
+use super::say;
+use crate::bench::{bench, write, BenchOptions};
+use crate::cli::{parse_methods, BenchArgs};
+use crate::results::{stages_table, table};
+use crate::session::{cache_folder, Session};
+use anyhow::{bail, Context, Result};
+use engine::Capture;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Runs the benchmark, writes its files and prints its table.
+pub fn run(arguments: &BenchArgs) -> Result<()> {
+    // All that can be wrong with the command line is found before anything slow is done.
+    let methods = parse_methods(&arguments.methods.method, &arguments.methods.set)?;
+    let capture = capture(arguments)?;
+    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session())?;
+    let bar = ProgressBar::new(session.frames() as u64).with_style(style()?);
+    let options = BenchOptions {
+        methods,
+        warmup: arguments.warmup as usize,
+        metrics: !arguments.no_metrics,
+        capture,
+        cache: cache_folder(),
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+    };
+    let mut progress = |what: &str, done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        bar.set_message(what.to_owned());
+    };
+    let results = bench(&mut session, options, &mut progress)?;
+    bar.finish_and_clear();
+    write(&results, &arguments.out)?;
+    if arguments.json {
+        return say(&serde_json::to_string_pretty(&results)?);
+    }
+    say(&table(&results))?;
+    if arguments.explain {
+        for method in &results.methods {
+            say(&stages_table(&results, method))?;
+        }
+    }
+    say(&format!("{} and results.csv are in {}", "results.json", arguments.out.display()))
+}
+
+fn capture(arguments: &BenchArgs) -> Result<Option<(usize, Capture)>> {
+    let Some(frame) = arguments.capture else { return Ok(None) };
+    if frame >= arguments.scene.frames as usize {
+        bail!("--capture {frame}: the run has only {} frames, counted from 0", arguments.scene.frames);
+    }
+    if arguments.no_metrics {
+        bail!("--capture needs the untimed pass: leave --no-metrics out");
+    }
+    std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
+    Ok(Some((frame, Capture::load(&arguments.out.join("capture"))?)))
+}
+
+fn style() -> Result<ProgressStyle> {
+    Ok(ProgressStyle::with_template("{msg:18} {wide_bar} {pos}/{len} {eta}")?)
+}
