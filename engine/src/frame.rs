@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, Vulkan};
 use crate::image::Target;
 use crate::lower::{self, Lowered};
-use crate::recorder::{IndexedIndirect, Op, Recorder};
+use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
 use crate::timers::{Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
@@ -156,6 +156,11 @@ impl Frame {
         self.recorder.text(|id| self.gpu.resource_name(id))
     }
 
+    /// The steps recorded since the last submission, with the barriers derived between them.
+    pub fn recorded(&self) -> &[Recorded] {
+        &self.recorder.ops
+    }
+
     /// Runs what was recorded and waits for it. For methods that need the host in the middle of a frame; the wait is in
     /// the frame's time.
     pub fn submit_and_wait(&mut self) -> Result<()> {
@@ -174,7 +179,7 @@ impl Frame {
         result
     }
 
-    fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[crate::recorder::Recorded]) -> Result<()> {
+    fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[Recorded]) -> Result<()> {
         let how = lower::How {
             timer: self.timer,
             statistics: if self.count_statistics { queries.statistics } else { None },

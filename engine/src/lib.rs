@@ -30,7 +30,7 @@ pub use image::{Format, Image, Target};
 pub use instance::{adapters, device_lines};
 pub use memory::{Buffer, Placement};
 pub use messages::Message;
-pub use recorder::{IndexedIndirect, Op, Primitives, Recorder};
+pub use recorder::{IndexedIndirect, Op, Primitives, Recorded, Recorder};
 pub use timers::TimerMode;
 
 /// What the engine's calls return.

@@ -4,6 +4,7 @@
 
 pub mod animation;
 mod bounds;
+pub mod bvh;
 mod camera;
 mod check;
 mod error;

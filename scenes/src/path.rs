@@ -23,7 +23,9 @@ use viewpoint::Viewpoint;
 use way::Way;
 
 /// Scene time that passes in a run at speed 1, in seconds, where the scene's motion has no end of its own.
-const RUN_S: f64 = 10.0;
+const RUN_S: f64 = 16.0;
+/// Frames of a run that goes the whole way at speed 1: 16 s at 60 Hz, as in Kim 2015, V.
+const RUN_FRAMES: f64 = 960.0;
 /// How far `zoom` narrows the field of view.
 const ZOOM: f64 = 4.0;
 
@@ -84,6 +86,7 @@ pub struct Shot {
 pub struct CameraPath {
     name: String,
     speed: f64,
+    whole: bool,
     base: Viewpoint,
     course: Course,
     clock: Clock,
@@ -145,11 +148,11 @@ impl CameraPath {
             }
         };
         let clock = Clock::of(&scene.motion);
-        Ok(CameraPath { name: name.into(), speed, base, course, clock, detail: String::new() })
+        Ok(CameraPath { name: name.into(), speed, whole: false, base, course, clock, detail: String::new() })
     }
 
     /// A path recorded in a file, see [`record`] for the format. Scene time follows the recording if it has times,
-    /// otherwise it passes as on the other paths, ten seconds a run.
+    /// otherwise it passes as on the other paths, sixteen seconds a run.
     ///
     /// # Errors
     /// A file that cannot be read or is no recording, or a speed that is not above 0 and finite.
@@ -161,7 +164,7 @@ impl CameraPath {
         let name = path.file_stem().map_or("recorded".into(), |stem| stem.to_string_lossy().into_owned());
         let detail = format!(" sha256={}", recording.fingerprint());
         let clock = Clock::Endless(RUN_S);
-        Ok(CameraPath { name, speed, base, course: Course::Recorded(recording), clock, detail })
+        Ok(CameraPath { name, speed, whole: false, base, course: Course::Recorded(recording), clock, detail })
     }
 
     /// The name asked for, or the stem of the recorded file's name.
@@ -190,12 +193,28 @@ impl CameraPath {
 
     /// A line that differs between any two paths through the same scene, and stays the same from run to run: for cache keys.
     pub fn describe(&self) -> String {
-        format!("{} speed={:?}{}", self.name, self.speed, self.detail)
+        let whole = if self.whole { " whole" } else { "" };
+        format!("{} speed={:?}{whole}{}", self.name, self.speed, self.detail)
     }
 
-    /// The camera in frame `frame` of a run of `frames`, both ends of the way included. Frames past the last go on beyond.
+    /// The same path, its whole way (times the speed) spread over each run, however few frames that has: for seeing all of
+    /// it quickly. The camera then moves by large steps.
+    pub fn whole(self) -> Self {
+        CameraPath { whole: true, ..self }
+    }
+
+    /// The camera in frame `frame` of a run of `frames`. At speed 1 a frame goes on by 1/960 of the way, whatever the
+    /// run's length, so that motion from frame to frame is that of the papers' 16 second sequences. A recorded or animated
+    /// path is spread over the run from first key to last instead, as is [`CameraPath::whole`]; both ends are included.
+    /// Frames past the last go on beyond.
     pub fn sample(&self, frame: usize, frames: usize) -> Shot {
-        let run = if frames < 2 { 0.0 } else { frame as f64 / (frames - 1) as f64 * self.speed };
+        let spread = self.whole || matches!(self.course, Course::Animated { .. } | Course::Recorded(_));
+        let way = match (spread, frames) {
+            (true, ..2) => 0.0,
+            (true, frames) => frame as f64 / (frames - 1) as f64,
+            (false, _) => frame as f64 / RUN_FRAMES,
+        };
+        let run = way * self.speed;
         let seconds = self.clock.at(run);
         let Viewpoint { pose, projection, .. } = self.base;
         let mut shot = Shot { pose, projection, seconds };

@@ -18,7 +18,7 @@ fn scenes() -> Vec<Scene> {
 }
 
 fn named(scene: &Scene, name: &str, speed: f64) -> CameraPath {
-    CameraPath::named(scene, Some(name), speed).expect("the path exists")
+    CameraPath::named(scene, Some(name), speed).map(CameraPath::whole).expect("the path exists")
 }
 
 fn shots(path: &CameraPath) -> Vec<Shot> {
@@ -200,7 +200,7 @@ fn descriptions_differ_where_paths_do() {
     .expect("the file can be written");
     let after = CameraPath::from_file(&one.0, 1.0).expect("a recording").describe();
     assert_ne!(before, after);
-    assert_eq!(named(scene, "walk", 2.0).describe(), "walk speed=2.0");
+    assert_eq!(named(scene, "walk", 2.0).describe(), "walk speed=2.0 whole");
     assert_ne!(named(scene, "walk", 2.0).describe(), named(scene, "pan", 2.0).describe());
 }
 

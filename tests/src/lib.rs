@@ -1,1 +1,39 @@
-//! x
+//! The harness: a device with validation on, small worlds, laws that hold for every method, and checkers that can fail.
+//!
+//! Laws return their faults, one line each, instead of panicking: so a test can plant an error and see it reported.
+
+pub mod device;
+pub mod footprints;
+pub mod golden;
+pub mod hazards;
+pub mod lab;
+pub mod laws;
+pub mod random;
+pub mod sessions;
+pub mod worlds;
+
+pub use device::{gpu, options, Device};
+pub use lab::{Lab, Subject, Take};
+pub use random::Random;
+pub use worlds::Case;
+
+/// Fails with every fault on a line of its own.
+///
+/// # Panics
+/// If there is a fault.
+#[track_caller]
+pub fn assert_none(faults: &[String]) {
+    assert!(faults.is_empty(), "{} faults:\n{}\n", faults.len(), faults.join("\n"));
+}
+
+/// Fails if no fault was found where one was planted.
+///
+/// # Panics
+/// If there is none, or if none has `expected` in it.
+#[track_caller]
+pub fn assert_caught(faults: &[String], expected: &str) {
+    assert!(
+        faults.iter().any(|fault| fault.contains(expected)),
+        "a planted error went unnoticed: no fault says '{expected}' among {faults:?}"
+    );
+}

@@ -75,9 +75,12 @@ pub struct SceneChoice {
     /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, or a recorded .json file
     #[arg(long, value_name = "NAME|FILE")]
     pub path: Option<String>,
-    /// How many times the path's way the camera goes in the run
+    /// How fast the camera goes: at 1, a frame is 1/960 of the path's way (16 s at 60 Hz)
     #[arg(long, value_name = "F", default_value_t = 1.0)]
     pub speed: f64,
+    /// Spread the path's whole way over the run, however few frames that has
+    #[arg(long)]
+    pub whole_path: bool,
     /// Frames of the run
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: u32,
@@ -203,6 +206,7 @@ impl SceneChoice {
             seed: self.seed,
             path: self.path.clone(),
             speed: self.speed,
+            whole_path: self.whole_path,
             frames: self.frames as usize,
             size: self.size,
         }

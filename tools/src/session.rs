@@ -20,6 +20,8 @@ pub struct SessionOptions {
     pub path: Option<String>,
     /// How many times the path's way the camera goes in a run.
     pub speed: f64,
+    /// Spread the whole way over the run, however few frames that has.
+    pub whole_path: bool,
     /// Frames of a run, > 0.
     pub frames: usize,
     /// Width and height in pixels.
@@ -34,6 +36,7 @@ impl Default for SessionOptions {
             seed: 1,
             path: None,
             speed: 1.0,
+            whole_path: false,
             frames: 30,
             size: [1280, 720],
         }
@@ -75,6 +78,7 @@ impl Session {
             Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), options.speed)?,
             name => CameraPath::named(&scene, name, options.speed)?,
         };
+        let path = if options.whole_path { path.whole() } else { path };
         let targets = Targets::new(gpu, options.size)?;
         let world = World::new(gpu, &scene).with_context(|| format!("scene '{}'", scene.name))?;
         Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })

@@ -72,8 +72,8 @@ pub fn test_bounds(bounds: &[Bounds], view: &CullView) -> Vec<u32> {
 }
 
 /// How far inside the view volume a box reaches, in f64 and without rounding: the least over the planes of the largest
-/// plane value in the box, divided by what such values consist of. Below 0 the box is outside some plane; within
-/// [`ROUNDING_BAND`] of 0 the GPU must keep it.
+/// plane value in the box, divided by what such values consist of. Below 0 the box is outside some plane. The GPU keeps
+/// the box from -[`KEPT_BAND`] up and culls it below -[`ROUNDING_BAND`]; between them its own rounding decides.
 pub fn oracle_margin(bounds: &Bounds, view: &CullView) -> f64 {
     let vec = |high: [f32; 3], low: [f32; 3]| glam::DVec3::from(high.map(f64::from)) + glam::DVec3::from(low.map(f64::from));
     let centre = vec(bounds.centre_high, bounds.centre_low) - vec(view.camera_high, view.camera_low);
@@ -95,3 +95,6 @@ pub fn oracle_margin(bounds: &Bounds, view: &CullView) -> f64 {
 /// Where f32 and f64 may disagree, as a share of the plane value's parts: the error bound itself plus the rounding of the
 /// dot products (8u), see `include/cull.glsl`.
 pub const ROUNDING_BAND: f64 = CLIP_ERROR as f64 + 8.0 / 16_777_216.0;
+
+/// How far outside a box is kept for certain: the error bound less the rounding of the dot products.
+pub const KEPT_BAND: f64 = CLIP_ERROR as f64 - 8.0 / 16_777_216.0;

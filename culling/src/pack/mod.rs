@@ -8,7 +8,7 @@ use crate::world::World;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement};
 use shaders::types::{DrawCommand, PACK_CHUNK};
-use shaders::{pack, BufferRef, Stage};
+use shaders::{pack, BufferRef, ResourceId, Stage};
 
 /// A list of indirect commands on the GPU, with room for every object of a world, so that it cannot overflow.
 pub struct DrawList {
@@ -17,6 +17,7 @@ pub struct DrawList {
     starts: Buffer<u32>,
     totals: Vec<Buffer<u32>>,
     subgroup_size: u32,
+    world: ResourceId,
 }
 
 impl DrawList {
@@ -30,11 +31,16 @@ impl DrawList {
             starts: Buffer::new(gpu, &format!("{name}.starts"), chunks, Placement::Storage)?,
             totals: (0..world.ranges().len()).map(total).collect::<std::result::Result<_, _>>()?,
             subgroup_size: gpu.subgroup_size(),
+            world: world.id(),
         })
     }
 
     /// Packs a command for every object whose flag is not 0.
+    ///
+    /// # Panics
+    /// If the list was made for another world: it would not have the room.
     pub fn pack(&self, f: &mut Frame, world: &World, flags: BufferRef<u32>) {
+        assert_eq!(self.world, world.id(), "this list was made for another world: make the method again");
         for (range, total) in world.ranges().iter().zip(&self.totals) {
             let chunks = range.count.div_ceil(PACK_CHUNK);
             let (first_object, object_count) = (range.first, range.count);
@@ -64,6 +70,7 @@ impl DrawList {
 
     /// The multi-draws of this list, one a kind of primitive.
     pub(crate) fn draws<'a>(&'a self, world: &'a World) -> impl Iterator<Item = IndexedIndirect> + 'a {
+        assert_eq!(self.world, world.id(), "this list was made for another world: make the method again");
         world.ranges().iter().zip(&self.totals).map(|(range, total)| IndexedIndirect {
             vertices: world.vertices().into(),
             indices: world.indices().into(),

@@ -9,6 +9,7 @@ pub use sets::VisibleSets;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, IndexedIndirect, Placement, Target};
 use shaders::types::DrawCommand;
+use shaders::ResourceId;
 use std::sync::Arc;
 
 /// No options.
@@ -19,6 +20,7 @@ struct Reference {
     all: Vec<DrawCommand>,
     commands: Buffer<DrawCommand>,
     counts: Vec<Buffer<u32>>,
+    world: ResourceId,
 }
 
 /// Makes the method.
@@ -34,12 +36,14 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         all: setup.world.read_all_commands()?,
         commands: Buffer::new(setup.gpu, "ref.commands", setup.world.len(), Placement::Upload)?,
         counts: (0..setup.world.ranges().len()).map(count).collect::<std::result::Result<_, _>>()?,
+        world: setup.world.id(),
     }))
 }
 
 impl Method for Reference {
     /// Writes the commands of the visible set: known beforehand, so not part of the frame.
     fn prepare(&mut self, world: &World, view: &View) -> Result<()> {
+        assert_eq!(self.world, world.id(), "this list was made for another world: make the method again");
         let Some(visible) = self.visible.frame(view.frame) else {
             let needs = format!("the visible set of frame {}, but the run's sets have {} frames", view.frame, self.visible.len());
             return Err(Error::Missing { method: "ref", needs });

@@ -17,7 +17,7 @@ use glam::DAffine3;
 use scenes::{Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
-use shaders::{draw, world, BufferRef, Stage};
+use shaders::{draw, world, BufferRef, ResourceId, Stage};
 
 /// Objects that lie side by side and are drawn with the same kind of primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,6 +104,11 @@ impl World {
     /// True if there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Tells worlds of one device apart: what belongs to one world must not be used with another.
+    pub fn id(&self) -> ResourceId {
+        self.objects.all().id
     }
 
     /// Triangles of all objects, instances counted apart.

@@ -31,6 +31,7 @@ fn open(choice: &SceneChoice) -> Result<(Scene, CameraPath)> {
         Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), choice.speed)?,
         name => CameraPath::named(&scene, name, choice.speed)?,
     };
+    let path = if choice.whole_path { path.whole() } else { path };
     Ok((scene, path))
 }
 

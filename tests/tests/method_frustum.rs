@@ -1,0 +1,7 @@
+//! The laws of `frustum`, and its stage against its twin and the f64 oracle.
+
+#[path = "method_frustum/stage.rs"]
+mod stage;
+
+harness::exact_method_tests!("frustum");
+harness::skipping_method_tests!("frustum");

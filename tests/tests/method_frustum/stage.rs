@@ -1,0 +1,108 @@
+//! `frustum/test_bounds` on random boxes and cameras of every kind.
+
+use culling::frustum::twin;
+use culling::View;
+use engine::{Buffer, Gpu, Placement};
+use harness::worlds::special_projections;
+use harness::{gpu, Random};
+use scenes::{Pose, Shot};
+use shaders::types::{Bounds, CullView, OBJECT_ALWAYS_KEPT};
+
+const BOXES: usize = 10_000;
+
+fn run(gpu: &Gpu, bounds: &[Bounds], view: CullView) -> Vec<u32> {
+    let input = Buffer::with_data(gpu, "test.bounds", bounds, Placement::Storage).unwrap();
+    let kept = Buffer::with_data(gpu, "test.kept", &vec![7u32; bounds.len()], Placement::Storage).unwrap();
+    let stage = shaders::frustum::TestBounds { bounds: input.all(), kept: kept.all(), view, object_count: bounds.len() as u32 };
+    let mut f = gpu.frame();
+    f.dispatch(stage, bounds.len() as u32);
+    f.finish().unwrap();
+    kept.read().unwrap()
+}
+
+/// Boxes around a camera, many of them touching a plane of its view volume to within roundings.
+fn boxes(random: &mut Random, shot: &Shot, view: &View) -> Vec<Bounds> {
+    let world_from_clip = view.clip_from_relative().inverse();
+    let any = |random: &mut Random| {
+        let clip = glam::DVec4::new(random.range(-1.5, 1.5), random.range(-1.5, 1.5), random.decade(1e-6, 1.5), 1.0);
+        let at = world_from_clip * clip;
+        let relative = if at.w.abs() > 1e-9 { at.truncate() / at.w } else { random.vector() };
+        let distance = relative.length().max(1e-3);
+        let mut half = random.vector().abs() * distance * random.decade(1e-5, 1.0);
+        if random.below(8) == 0 {
+            half[random.below(3)] = 0.0;
+        }
+        (relative, half)
+    };
+    let bound = |random: &mut Random, index: usize| {
+        let (mut relative, half) = any(random);
+        if index % 2 == 0 {
+            // Moves the box until it just touches the plane.
+            let clip = view.clip_from_relative();
+            let widen = [1.0, 1.0];
+            let plane = twin::planes(widen)[random.below(6)].as_dvec4();
+            let row = glam::DVec3::new(plane.dot(clip.x_axis), plane.dot(clip.y_axis), plane.dot(clip.z_axis));
+            let value = row.dot(relative) + plane.dot(clip.w_axis) + row.abs().dot(half);
+            if row.length_squared() > 0.0 {
+                relative -= row * (value / row.length_squared());
+            }
+        }
+        let (centre_high, centre_low) = culling::world::split(relative + shot.pose.position);
+        let flags = [0, 0, 0, 1, 2][random.below(5)];
+        Bounds { centre_high, centre_low, half_extent: half.as_vec3().to_array(), flags }
+    };
+    (0..BOXES).map(|index| bound(random, index)).collect()
+}
+
+#[test]
+fn boxes_are_kept_as_twin_and_oracle_say() {
+    let gpu = gpu();
+    let mut random = Random::new(21);
+    let (mut near_ties, mut kept_outside, mut all) = (0, 0, 0);
+    for (name, projection) in special_projections() {
+        for away in [0.0, 1e3, 1e6] {
+            let pose = Pose { position: random.vector() * away, rotation: random.turn() };
+            let shot = Shot { pose, projection, seconds: 0.0 };
+            let view = View::new(&shot, [161, 97], 0, gpu.snap_px());
+            let bounds = boxes(&mut random, &shot, &view);
+            let kept = run(&gpu, &bounds, view.cull());
+            let twin = twin::test_bounds(&bounds, &view.cull());
+            for ((bound, kept), twin) in bounds.iter().zip(&kept).zip(&twin) {
+                let margin = twin::oracle_margin(bound, &view.cull());
+                all += 1;
+                near_ties += usize::from(kept != twin);
+                kept_outside += usize::from(margin < 0.0 && *kept == 1);
+                if margin >= -twin::KEPT_BAND {
+                    assert_eq!(*kept, 1, "{name}, {away} m out: {bound:?} is inside by {margin:e} but was culled");
+                }
+                if margin < -twin::ROUNDING_BAND {
+                    assert_eq!(*kept, 0, "{name}, {away} m out: {bound:?} is outside by {margin:e} but was kept");
+                }
+                let in_band = margin < -twin::KEPT_BAND && margin >= -twin::ROUNDING_BAND;
+                assert!(kept == twin || in_band, "{name}: stage {kept}, twin {twin}, margin {margin:e}: {bound:?}");
+            }
+        }
+    }
+    assert!(all >= 100_000, "{all} boxes are too few");
+    assert!(kept_outside > all / 100, "hardly any box lies near a plane: {kept_outside} of {all}");
+    assert!(near_ties < all / 100, "stage and twin differ in {near_ties} of {all}");
+}
+
+#[test]
+fn boxes_without_a_meaning_are_kept() {
+    let gpu = gpu();
+    let shot = harness::worlds::shot(glam::DVec3::ZERO, glam::DVec3::NEG_Z, harness::worlds::PERSPECTIVE);
+    let view = View::new(&shot, [8, 8], 0, gpu.snap_px()).cull();
+    let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 0.0];
+    let mut bounds: Vec<Bounds> = Vec::new();
+    for centre in odd {
+        for half in odd {
+            let flags = if centre.is_finite() && half.is_finite() && half >= 0.0 { 0 } else { OBJECT_ALWAYS_KEPT };
+            bounds.push(Bounds { centre_high: [centre; 3], centre_low: [0.0; 3], half_extent: [half.max(0.0); 3], flags });
+        }
+    }
+    let kept = run(&gpu, &bounds, view);
+    for (bound, kept) in bounds.iter().zip(kept) {
+        assert!(kept == 1 || bound.flags == 0, "{bound:?} has no meaning, but was culled");
+    }
+}
