@@ -131,7 +131,8 @@ type Optional = Vec<(&'static str, bool, &'static str)>;
 
 /// What the device lacks, and which optional features it has.
 fn features(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32) -> (Vec<String>, Optional) {
-    if version < vk::API_VERSION_1_3 {
+    // Features decide, not the version: RenderDoc 1.24 says 1.2 of devices that it passes 1.3 through to.
+    if version < vk::API_VERSION_1_2 {
         return (vec!["Vulkan 1.3".to_owned()], Vec::new());
     }
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default();

@@ -6,6 +6,11 @@ use renderdoc::{DevicePointer, RenderDoc, V110};
 use std::ffi::c_void;
 use std::path::{Path, PathBuf};
 
+#[cfg(windows)]
+const LIBRARY: &str = "renderdoc.dll";
+#[cfg(not(windows))]
+const LIBRARY: &str = "librenderdoc.so";
+
 /// The loaded RenderDoc library. Make it before the device: it has to see the instance being made.
 pub struct Capture {
     library: RenderDoc<V110>,
@@ -13,16 +18,19 @@ pub struct Capture {
 
 impl Capture {
     /// Loads RenderDoc and turns its Vulkan layer on for instances made from now on.
-    /// Captures go to files whose names begin with `path`.
-    pub fn load(path: &Path) -> Result<Self> {
+    pub fn load() -> Result<Self> {
         std::env::set_var("ENABLE_VULKAN_RENDERDOC_CAPTURE", "1");
-        let mut library = RenderDoc::<V110>::new().map_err(|error| Error::Capture(error.to_string()))?;
-        library.set_log_file_path_template(path);
+        // The crate only finds the library if it is loaded; we load it, and keep it for the life of the process.
+        // SAFETY: loading RenderDoc runs its initialisers, which is what a user who asks for a capture wants.
+        let loaded = unsafe { libloading::Library::new(LIBRARY) }.map_err(|error| Error::Capture(error.to_string()))?;
+        std::mem::forget(loaded);
+        let library = RenderDoc::<V110>::new().map_err(|error| Error::Capture(error.to_string()))?;
         Ok(Capture { library })
     }
 
-    /// Starts a capture of all that follows on this device.
-    pub fn start(&mut self, gpu: &Gpu) -> Result<()> {
+    /// Starts a capture of all that follows on this device. Its file's name begins with `path`.
+    pub fn start(&mut self, gpu: &Gpu, path: &Path) -> Result<()> {
+        self.library.set_log_file_path_template(path);
         self.library.start_frame_capture(device_pointer(gpu)?, std::ptr::null());
         Ok(())
     }

@@ -14,7 +14,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scale = arguments.next().map_or(Ok(1.0), |scale| scale.parse())?;
     let scene = scenes::open(&name, &SceneOptions { scale, ..SceneOptions::default() })?;
     let bounds = WorldBounds::new(&scene);
-    let boxes: Vec<Aabb> = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
+    let boxes: Vec<Aabb> =
+        scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object)).collect();
     println!("{name}: {} objects; least and median of {RUNS} builds", boxes.len());
     for split in [Split::Sah, Split::Middle, Split::EqualCount, Split::Ploc] {
         let mut times_ms = Vec::new();

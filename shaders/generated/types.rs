@@ -5,8 +5,8 @@
 /// `CLIP_ERROR` in GLSL.
 pub const CLIP_ERROR: f32 = 1.9073486e-6;
 
-/// `DEPTH_SLACK_PER_SNAP` in GLSL.
-pub const DEPTH_SLACK_PER_SNAP: f32 = 8.0;
+/// `DEPTH_SLACK_PER_PIXEL` in GLSL.
+pub const DEPTH_SLACK_PER_PIXEL: f32 = 8.0;
 
 /// `ROUNDING` in GLSL.
 pub const ROUNDING: f32 = 2.3841858e-7;

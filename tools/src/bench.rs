@@ -1,6 +1,6 @@
 //! The main job: methods × frames, once for the clock and once for the truth, into results.
 
-use crate::metrics::MethodErrors;
+use crate::metrics::{MethodErrors, Truth};
 use crate::results::{self, FrameMs, Frames, Results, SCHEMA};
 use crate::run::{Contender, Measured};
 use crate::session::Session;
@@ -21,12 +21,22 @@ pub struct BenchOptions {
     pub warmup: usize,
     /// Measure errors against the truth.
     pub metrics: bool,
-    /// The frame to capture, if any, with the loaded library.
-    pub capture: Option<(usize, Capture)>,
+    /// The frame to capture, if any.
+    pub capture: Option<CaptureOrder>,
     /// Where visible sets are cached.
     pub cache: Option<PathBuf>,
     /// What was typed, for the results.
     pub command: String,
+}
+
+/// Which frame of each method RenderDoc captures, and where to.
+pub struct CaptureOrder {
+    /// The frame.
+    pub frame: usize,
+    /// The folder of the capture files.
+    pub folder: PathBuf,
+    /// The loaded library.
+    pub library: Capture,
 }
 
 /// Told how far the benchmark is: what it does, steps done, steps in all.
@@ -125,22 +135,27 @@ fn measure(
     for frame in 0..session.frames() {
         let truth = truth.frame(session, frame)?;
         for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
-            let capturing = options.capture.as_mut().filter(|(wanted, _)| *wanted == frame).map(|(_, capture)| capture);
-            let measured = match capturing {
+            let order = options.capture.as_mut().filter(|order| order.frame == frame);
+            let measured = match order {
                 None => contender.measured(session, frame, &truth)?,
-                Some(capture) => {
-                    capture.start(&session.gpu)?;
-                    let measured = contender.measured(session, frame, &truth)?;
-                    let file = capture.end(&session.gpu)?;
-                    tracing::info!(method = contender.label(), file = %file.display(), "captured");
-                    measured
-                }
+                Some(order) => order.measured(session, contender, &truth)?,
             };
             records.push(measured);
         }
         progress("measuring errors", frame + 1, session.frames());
     }
     Ok(())
+}
+
+impl CaptureOrder {
+    fn measured(&mut self, session: &mut Session, contender: &mut Contender, truth: &Truth) -> Result<Measured> {
+        let name: String = contender.label().chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).collect();
+        self.library.start(&session.gpu, &self.folder.join(name))?;
+        let measured = contender.measured(session, self.frame, truth)?;
+        let file = self.library.end(&session.gpu)?;
+        tracing::info!("{}: captured to {}", contender.label(), file.display());
+        Ok(measured)
+    }
 }
 
 impl Records {

@@ -4,7 +4,7 @@
 mod pyramid;
 pub mod twin;
 
-pub use pyramid::Pyramid;
+pub use pyramid::{layout, Pyramid};
 
 use crate::pack::DrawList;
 use crate::world::Still;
@@ -22,6 +22,10 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "pyramid texels a footprint may touch in each direction: more is tighter and slower",
     },
 ];
+
+/// After the camera stops: the frame it stopped in may test against a pyramid that lacks occluders and see too much; the
+/// next draws that, and so tests against the full depth; the one after draws just what that test saw, and so do all others.
+const SETTLED_AFTER: u32 = 3;
 
 struct Hzb {
     gpu: Gpu,
@@ -45,7 +49,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         late: DrawList::new(gpu, "hzb.late", world)?,
         pyramid: None,
         texels: setup.options.number("texels"),
-        still: Still::new(setup.options),
+        still: Still::new(setup.options, SETTLED_AFTER),
     }))
 }
 

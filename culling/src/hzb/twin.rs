@@ -3,7 +3,7 @@
 use crate::frustum::twin::{clip_from_bounds, farthest_along, footprint_widening, outside_frustum, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
-    Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_SNAP, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS, ROUNDING,
+    Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS, ROUNDING,
 };
 
 /// The farthest (smallest) of the source's texels under each texel of the next level.
@@ -96,7 +96,7 @@ pub fn footprint_of(clip: &ClipBox, view: &CullView, flags: u32) -> Footprint {
         empty: first.cmpgt(last).any() || last.cmplt(Vec2::ZERO).any() || first.cmpge(size).any(),
         first: inside(first),
         last: inside(last),
-        nearest: (nearest + (nearest - farthest.min(nearest)) * DEPTH_SLACK_PER_SNAP * view.snap_px).min(1.0),
+        nearest: (nearest + (nearest - farthest.min(nearest)) * DEPTH_SLACK_PER_PIXEL * grow).min(1.0),
     }
 }
 

@@ -11,9 +11,11 @@ pub const SKIP_OPTION: OptionInfo = OptionInfo {
     help: "leave out stages that cannot change the result",
 };
 
-/// Remembers what the last frame looked at.
+/// Remembers what the last frames looked at.
 pub struct Still {
     enabled: bool,
+    settled_after: u32,
+    unchanged: u32,
     last: Option<(View, u64)>,
 }
 
@@ -21,21 +23,24 @@ impl Still {
     /// Why stages are left out while it holds.
     pub const REASON: &'static str = "camera and objects unchanged";
 
-    /// Follows the method's `skip` option.
-    pub fn new(options: &Options) -> Self {
-        Still { enabled: options.flag("skip"), last: None }
+    /// Follows the method's `skip` option. The method's lists no longer change from the `settled_after`th frame on that
+    /// sees what the frame before it saw: 1 if they depend on this frame alone, more if they also depend on earlier ones.
+    pub fn new(options: &Options, settled_after: u32) -> Self {
+        Still { enabled: options.flag("skip"), settled_after, unchanged: 0, last: None }
     }
 
-    /// True if this frame sees exactly what the last one saw. Call once a frame.
+    /// True if this frame sees exactly what the last ones saw, and their lists have settled. Call once a frame.
     pub fn holds(&mut self, world: &World, view: &View) -> bool {
         let now = Some((*view, world.revision()));
         let same = self.last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| last.0.same(&now.0) && last.1 == now.1);
         self.last = now;
-        same && self.enabled
+        self.unchanged = if same { self.unchanged.saturating_add(1) } else { 0 };
+        self.enabled && self.unchanged >= self.settled_after
     }
 
     /// The next frame is the first.
     pub fn forget(&mut self) {
         self.last = None;
+        self.unchanged = 0;
     }
 }

@@ -108,7 +108,11 @@ impl Candidate {
             None => true,
             Some(best) => (other.cost, other.imbalance) < (best.cost, best.imbalance),
         };
-        if better { Some(other) } else { best }
+        if better {
+            Some(other)
+        } else {
+            best
+        }
     }
 }
 

@@ -42,7 +42,11 @@ impl Bvh {
             }
         }
         if self.unbounded.len() + inside != self.leaf_of_object.len() {
-            return Err(format!("{} objects are set aside, not {}", self.unbounded.len(), self.leaf_of_object.len() - inside));
+            return Err(format!(
+                "{} objects are set aside, not {}",
+                self.unbounded.len(),
+                self.leaf_of_object.len() - inside
+            ));
         }
         Ok(())
     }
@@ -67,7 +71,10 @@ impl Bvh {
             let object = node.first_child_or_object;
             let leaf = self.leaf_of_object.get(object as usize);
             if leaf != Some(&(index as u32)) || !node.bounds.is_valid() {
-                return Err(format!("leaf {index} with {:?} holds object {object}, whose leaf is {leaf:?}", node.bounds));
+                return Err(format!(
+                    "leaf {index} with {:?} holds object {object}, whose leaf is {leaf:?}",
+                    node.bounds
+                ));
             }
             return Ok(());
         };
@@ -94,7 +101,8 @@ mod tests {
     use glam::DVec3;
 
     fn row() -> Bvh {
-        let boxes: Vec<Aabb> = (0..6).map(|x| DVec3::splat(f64::from(x))).map(|at| Aabb { min: at, max: at + 0.5 }).collect();
+        let boxes: Vec<Aabb> =
+            (0..6).map(|x| DVec3::splat(f64::from(x))).map(|at| Aabb { min: at, max: at + 0.5 }).collect();
         Bvh::build(&boxes, Split::Sah).unwrap()
     }
 

@@ -1,7 +1,7 @@
 //! `sightline bench`.
 
 use super::say;
-use crate::bench::{bench, write, BenchOptions};
+use crate::bench::{bench, write, BenchOptions, CaptureOrder};
 use crate::cli::{parse_methods, BenchArgs};
 use crate::results::{stages_table, table};
 use crate::session::{cache_folder, Session};
@@ -44,7 +44,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     say(&format!("{} and results.csv are in {}", "results.json", arguments.out.display()))
 }
 
-fn capture(arguments: &BenchArgs) -> Result<Option<(usize, Capture)>> {
+fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
     let Some(frame) = arguments.capture else { return Ok(None) };
     if frame >= arguments.scene.frames as usize {
         bail!("--capture {frame}: the run has only {} frames, counted from 0", arguments.scene.frames);
@@ -53,7 +53,7 @@ fn capture(arguments: &BenchArgs) -> Result<Option<(usize, Capture)>> {
         bail!("--capture needs the untimed pass: leave --no-metrics out");
     }
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
-    Ok(Some((frame, Capture::load(&arguments.out.join("capture"))?)))
+    Ok(Some(CaptureOrder { frame, folder: arguments.out.clone(), library: Capture::load()? }))
 }
 
 fn style() -> Result<ProgressStyle> {
