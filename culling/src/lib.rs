@@ -3,7 +3,9 @@
 //! A [`Method`] records a frame that draws what may be visible of a [`World`] as seen through a [`View`]. Methods are listed
 //! in [`METHODS`]; adding one is a folder, a line in that list and a test file (see `culling/README.md`).
 
+pub mod boxes;
 mod error;
+pub mod eovc;
 pub mod frustum;
 pub mod hzb;
 mod method;
@@ -12,10 +14,11 @@ pub mod none;
 mod options;
 pub mod pack;
 pub mod reference;
+pub mod roc;
 pub mod world;
 
 pub use error::Error;
-pub use method::{Guarantee, Method, Setup};
+pub use method::{Guarantee, Method, Setup, Work};
 pub use methods::{find, Entry, METHODS};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;

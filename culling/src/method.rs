@@ -22,6 +22,19 @@ impl std::fmt::Display for Guarantee {
     }
 }
 
+/// What a frame did to find out what is visible.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Occlusion queries issued.
+    pub queries: u64,
+    /// Boxes rasterised.
+    pub boxes: u64,
+    /// Rays cast.
+    pub rays: u64,
+    /// Nodes that rays looked at.
+    pub node_visits: u64,
+}
+
 /// What a method is made from.
 pub struct Setup<'a> {
     /// The device.
@@ -44,6 +57,14 @@ pub trait Method {
     /// Records one frame that clears the target and draws what may be visible. Every decision comes from the world, the view
     /// and earlier frames, never from what the target has bound.
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()>;
+
+    /// Turns the counting of [`Work`] on or off. Counting changes no decision; it is off in timed frames.
+    fn count_work(&mut self, _on: bool) {}
+
+    /// What the last frame did beyond drawing, if counting was on; the device must be idle.
+    fn work(&self) -> Result<Work> {
+        Ok(Work::default())
+    }
 
     /// Forgets earlier frames: after a camera cut, or when a run starts again from its first frame.
     fn forget(&mut self) -> Result<()> {

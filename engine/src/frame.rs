@@ -130,6 +130,11 @@ impl Frame {
         self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
     }
 
+    /// Draws what shows no object: boxes that are tested. Not among the report's draws.
+    pub fn test_boxes<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
+        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+    }
+
     /// Clears the target: colour to black, items to none, depth to far.
     pub fn clear(&mut self, target: &Target) {
         self.recorder.push("target/clear", Op::Clear { target: *target });

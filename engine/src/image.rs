@@ -187,4 +187,13 @@ pub struct Target {
     pub item: Option<ImageRef>,
     /// The depth buffer.
     pub depth: ImageRef,
+    /// Depth is only tested, and may be read as a texture at the same time.
+    pub depth_read_only: bool,
+}
+
+impl Target {
+    /// The same depth, tested and not written, and nothing else: what visibility tests draw to.
+    pub fn test_only(&self) -> Target {
+        Target { colour: None, item: None, depth_read_only: true, ..*self }
+    }
 }

@@ -149,7 +149,7 @@ impl Recording<'_> {
 
     fn draw(&self, stage: &BoundStage, draw: &IndexedIndirect, target: &Target) -> Result<()> {
         let colour = target.colour.map(|(_, format)| format);
-        self.bind(stage, Some(DrawState { colour, item: target.item.is_some(), primitives: draw.primitives }))?;
+        self.bind(stage, Some(DrawState { colour, item: target.item.is_some(), depth_write: !target.depth_read_only, primitives: draw.primitives }))?;
         let device = &self.vulkan.device;
         let (vertices, vertices_at, _) = range(&draw.vertices);
         let (indices, indices_at, _) = range(&draw.indices);
@@ -198,7 +198,10 @@ impl Recording<'_> {
             .into_iter()
             .chain(target.item.map(|image| attachment(image.view, nothing)))
             .collect();
-        let depth = attachment(target.depth.view, far);
+        let mut depth = attachment(target.depth.view, far);
+        if target.depth_read_only {
+            depth = depth.store_op(vk::AttachmentStoreOp::NONE);
+        }
         let info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colours).depth_attachment(&depth);
         let device = &self.vulkan.device;
         let viewport = [vk::Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, min_depth: 0.0, max_depth: 1.0 }];

@@ -27,6 +27,7 @@ pub(crate) struct Pipeline {
 pub(crate) struct DrawState {
     pub(crate) colour: Option<Format>,
     pub(crate) item: bool,
+    pub(crate) depth_write: bool,
     pub(crate) primitives: Primitives,
 }
 
@@ -190,7 +191,7 @@ fn draw_pipeline(
     let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
-        .depth_write_enable(true)
+        .depth_write_enable(state.depth_write)
         .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
     let replace = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
     let add = replace

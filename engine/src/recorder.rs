@@ -197,7 +197,8 @@ fn bindings(stage: &BoundStage, point: Point) -> Vec<Use> {
 }
 
 fn attachments(target: &Target) -> Vec<Use> {
-    let mut uses = vec![Use::both(target.depth.id, Point::Depth)];
+    let depth = Use::both(target.depth.id, Point::Depth);
+    let mut uses = vec![Use { writes: !target.depth_read_only, ..depth }];
     uses.extend(target.colour.map(|(image, _)| Use::both(image.id, Point::Colour)));
     uses.extend(target.item.map(|image| Use::both(image.id, Point::Colour)));
     uses

@@ -75,6 +75,77 @@ const _: () = {
     assert!(size_of::<ObjectsVertex>() == 16);
 };
 
+/// Draw/objects that flags each object with a fragment that passes the early tests: colour, depth and
+/// visibility in one pass (EOVC thesis III.2).
+///
+/// The colour, and a flag for the object. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectsAndFlags {
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for ObjectsAndFlags {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/objects_and_flags",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/objects_and_flags.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/objects_and_flags.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo { name: "objects", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+        ],
+        vertex_stride: 16,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ObjectsAndFlagsPush { view: self.view };
+        BoundStage::new(Self::INFO, vec![self.objects.into(), self.visible.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl GraphicsStage for ObjectsAndFlags {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ObjectsAndFlagsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndFlagsPush, view) == 0);
+    assert!(size_of::<ObjectsAndFlagsPush>() == 88);
+};
+
+/// One vertex of [`ObjectsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsAndFlagsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral.
+    pub normal_snorm16: [i16; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndFlagsVertex, position) == 0);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsVertex, normal_snorm16) == 12);
+    assert!(size_of::<ObjectsAndFlagsVertex>() == 16);
+};
+
 /// Draw/objects with the item buffer beside the colour. For the truth and for methods that need it.
 ///
 /// The colour, and who owns the pixel. Occluded fragments stop before this shader.
@@ -143,6 +214,82 @@ const _: () = {
     assert!(std::mem::offset_of!(ObjectsAndItemsVertex, position) == 0);
     assert!(std::mem::offset_of!(ObjectsAndItemsVertex, normal_snorm16) == 12);
     assert!(size_of::<ObjectsAndItemsVertex>() == 16);
+};
+
+/// Draw/objects_and_flags with the item buffer beside the colour.
+///
+/// The colour, who owns the pixel, and a flag for the object.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectsItemsAndFlags {
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for ObjectsItemsAndFlags {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/objects_items_and_flags",
+        modules: &[
+            ShaderModule {
+                kind: ShaderKind::Vertex,
+                spirv: include_bytes!("spirv/draw/objects_items_and_flags.vert.spv"),
+            },
+            ShaderModule {
+                kind: ShaderKind::Fragment,
+                spirv: include_bytes!("spirv/draw/objects_items_and_flags.frag.spv"),
+            },
+        ],
+        bindings: &[
+            BindingInfo { name: "objects", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+        ],
+        vertex_stride: 16,
+        outputs: &[0, 1],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ObjectsItemsAndFlagsPush { view: self.view };
+        BoundStage::new(Self::INFO, vec![self.objects.into(), self.visible.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl GraphicsStage for ObjectsItemsAndFlags {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ObjectsItemsAndFlagsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsPush, view) == 0);
+    assert!(size_of::<ObjectsItemsAndFlagsPush>() == 88);
+};
+
+/// One vertex of [`ObjectsItemsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsItemsAndFlagsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral.
+    pub normal_snorm16: [i16; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsVertex, position) == 0);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsVertex, normal_snorm16) == 12);
+    assert!(size_of::<ObjectsItemsAndFlagsVertex>() == 16);
 };
 
 /// One count a shaded fragment, added up. For pictures, never in timed frames.

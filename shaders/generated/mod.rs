@@ -4,9 +4,11 @@
 
 pub mod draw;
 pub mod engine;
+pub mod eovc;
 pub mod frustum;
 pub mod hzb;
 pub mod pack;
+pub mod roc;
 pub mod types;
 pub mod world;
 
@@ -15,10 +17,18 @@ use crate::contract::{Stage, StageInfo};
 /// What is fixed about each stage, by name.
 pub const STAGES: &[&StageInfo] = &[
     <draw::Objects as Stage>::INFO,
+    <draw::ObjectsAndFlags as Stage>::INFO,
     <draw::ObjectsAndItems as Stage>::INFO,
+    <draw::ObjectsItemsAndFlags as Stage>::INFO,
     <draw::Overdraw as Stage>::INFO,
     <engine::SpinPixels as Stage>::INFO,
     <engine::SpinWords as Stage>::INFO,
+    <eovc::ExtractGroups as Stage>::INFO,
+    <eovc::MarkPaths as Stage>::INFO,
+    <eovc::QueryGroups as Stage>::INFO,
+    <eovc::SelectOccludees as Stage>::INFO,
+    <eovc::TestSingles as Stage>::INFO,
+    <eovc::TouchPaths as Stage>::INFO,
     <frustum::TestBounds as Stage>::INFO,
     <hzb::ReduceDepth as Stage>::INFO,
     <hzb::ReduceLevels as Stage>::INFO,
@@ -26,5 +36,8 @@ pub const STAGES: &[&StageInfo] = &[
     <pack::CountFlags as Stage>::INFO,
     <pack::ScanCounts as Stage>::INFO,
     <pack::WriteCommands as Stage>::INFO,
+    <pack::WriteIndices as Stage>::INFO,
+    <roc::SelectBoxes as Stage>::INFO,
+    <roc::TestBoxes as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

@@ -209,3 +209,67 @@ const _: () = {
     assert!(std::mem::offset_of!(WriteCommandsPush, object_count) == 4);
     assert!(size_of::<WriteCommandsPush>() == 8);
 };
+
+/// The indices of flagged objects, in order, and how many there are as the instances of one draw. Last step
+/// of packing a list that is drawn instanced. Twin: culling/src/pack/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct WriteIndices {
+    /// `flags` in GLSL.
+    pub flags: BufferRef<u32>,
+    /// `starts` in GLSL.
+    pub starts: BufferRef<u32>,
+    /// `total` in GLSL.
+    pub total: BufferRef<u32>,
+    /// `listed` in GLSL.
+    pub listed: BufferRef<u32>,
+    /// `command` in GLSL.
+    pub command: BufferRef<types::DrawCommand>,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+}
+
+impl Stage for WriteIndices {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "pack/write_indices",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/pack/write_indices.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "flags", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "starts", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "total", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "listed", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "command", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 4,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = WriteIndicesPush { object_count: self.object_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.flags.into(), self.starts.into(), self.total.into(), self.listed.into(), self.command.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for WriteIndices {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct WriteIndicesPush {
+    object_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(WriteIndicesPush, object_count) == 0);
+    assert!(size_of::<WriteIndicesPush>() == 4);
+};

@@ -31,7 +31,9 @@ pub fn gpu() -> Device {
     let turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let gpu = GPU.get_or_init(|| match Gpu::open(&options()) {
         Ok(gpu) => gpu,
-        Err(error) => panic!("tests need a Vulkan device with validation layers: {error} (tools/setup.sh installs lavapipe)"),
+        Err(error) => {
+            panic!("tests need a Vulkan device with validation layers: {error} (tools/setup.sh installs lavapipe)")
+        }
     });
     let _ = gpu.take_messages();
     Device { gpu, _turn: turn }

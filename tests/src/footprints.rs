@@ -74,7 +74,13 @@ struct Print {
 }
 
 impl Print {
-    fn new(mut bound: Bounds, view: &View, scene: &Scene, object: &Object, shape: &impl Fn(&mut Bounds, &mut CullView)) -> Self {
+    fn new(
+        mut bound: Bounds,
+        view: &View,
+        scene: &Scene,
+        object: &Object,
+        shape: &impl Fn(&mut Bounds, &mut CullView),
+    ) -> Self {
         let mut cull = view.cull();
         shape(&mut bound, &mut cull);
         let clip = clip_from_bounds(&bound, &cull);

@@ -37,7 +37,7 @@ fn stage(stage: &BoundStage, point: Point) -> Vec<Touch> {
 fn target(target: &Target) -> Vec<Touch> {
     let colours = target.colour.map(|(image, _)| image.id).into_iter().chain(target.item.map(|image| image.id));
     let mut touches: Vec<_> = colours.map(|image| touch(image, Point::Colour, true, true)).collect();
-    touches.push(touch(target.depth.id, Point::Depth, true, true));
+    touches.push(touch(target.depth.id, Point::Depth, true, !target.depth_read_only));
     touches
 }
 
@@ -60,7 +60,9 @@ fn touches(op: &Op) -> Vec<Touch> {
         }
         Op::Clear { target: to } => target(to),
         Op::Fill { buffer, .. } => vec![touch(id(buffer), Point::Transfer, false, true)],
-        Op::Copy { from, to } => vec![touch(id(from), Point::Transfer, true, false), touch(id(to), Point::Transfer, false, true)],
+        Op::Copy { from, to } => {
+            vec![touch(id(from), Point::Transfer, true, false), touch(id(to), Point::Transfer, false, true)]
+        }
     }
 }
 
@@ -77,12 +79,13 @@ pub fn hazards(recorded: &[Recorded]) -> Vec<String> {
         for earlier in 0..later {
             let between = || recorded[earlier + 1..=later].iter().filter_map(|step| step.barrier.as_ref());
             for one in &steps[earlier] {
-                let conflicts = steps[later].iter().any(|other| {
-                    one.resource == other.resource && ((one.writes && other.reads) || other.writes)
-                });
+                let conflicts = steps[later]
+                    .iter()
+                    .any(|other| one.resource == other.resource && ((one.writes && other.reads) || other.writes));
                 if conflicts && !between().any(|barrier| separates(barrier, one)) {
                     let (from, to) = (&recorded[earlier].label, &recorded[later].label);
-                    faults.push(format!("{from} and {to} conflict over resource {} at {:?}", one.resource.0, one.point));
+                    faults
+                        .push(format!("{from} and {to} conflict over resource {} at {:?}", one.resource.0, one.point));
                 }
             }
         }

@@ -73,6 +73,10 @@ fn differences(place: &str, one: &Take, other: &Take) -> Vec<String> {
     differ.iter().filter(|(differs, _)| *differs).map(|(_, what)| format!("{place}: {what} differ")).collect()
 }
 
+/// Methods whose sets follow from fragments as they are drawn: one of two objects at the same depth owns the pixel, and an
+/// object drawn before its occluder is seen. Their depths do not depend on the order all the same.
+const ORDER_DECIDES: [&str; 3] = ["ref", "roc", "eovc"];
+
 /// Objects in another order: the same objects are drawn, and depths are the same. Only for scenes that do not move.
 pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let mut order: Vec<usize> = (0..case.scene.objects.len()).collect();
@@ -83,18 +87,23 @@ pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: 
         let mut lab = Lab::new(gpu, case);
         let (_, sets) = lab.truths(&case.shots);
         let mut method = lab.make(subject, &sets);
-        (lab.film(&mut *method, &case.shots), (0..lab.world.len()).map(|object| lab.world.scene_object(object)).collect())
+        (
+            lab.film(&mut *method, &case.shots),
+            (0..lab.world.len()).map(|object| lab.world.scene_object(object)).collect(),
+        )
     };
-    let ((straight, straight_scene), (mixed, mixed_scene)): ((_, Vec<usize>), (_, Vec<usize>)) = (film(case), film(&shuffled));
+    let ((straight, straight_scene), (mixed, mixed_scene)): ((_, Vec<usize>), (_, Vec<usize>)) =
+        (film(case), film(&shuffled));
     let mut faults = Vec::new();
     for (frame, (straight, mixed)) in straight.iter().zip(&mixed).enumerate() {
         let place = format!("{}, {}, frame {frame}", subject.options.label(), case.name);
         let mut drawn = vec![false; order.len()];
         straight.drawn.objects.iter().zip(&straight_scene).for_each(|(was_drawn, object)| drawn[*object] = *was_drawn);
         let mapped = |world: usize| order[mixed_scene[world]];
-        let moved = mixed.drawn.objects.iter().enumerate().filter(|(object, was_drawn)| drawn[mapped(*object)] != **was_drawn);
-        // Of `ref`'s sets a tie decides, and the order decides ties.
-        let moved = if subject.options.label() == "ref" { 0 } else { moved.count() };
+        let moved =
+            mixed.drawn.objects.iter().enumerate().filter(|(object, was_drawn)| drawn[mapped(*object)] != **was_drawn);
+        let free = !ORDER_DECIDES.iter().any(|id| subject.options.label().starts_with(id));
+        let moved = if free { moved.count() } else { 0 };
         if moved > 0 {
             faults.push(format!("{place}: {moved} objects drawn in one order only"));
         }
@@ -132,7 +141,7 @@ pub fn a_resize_hides_nothing(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<
 /// gives the bytes of its first time.
 pub fn a_camera_cut_hides_nothing(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let mut lab = Lab::new(gpu, case);
-    let cut: Vec<_> = [0, 0, 5, 5, 0, 3, 0].iter().map(|shot| case.shots[shot % case.shots.len()]).collect();
+    let cut: Vec<_> = [3, 0, 5, 5, 0, 3, 0].iter().map(|shot| case.shots[shot % case.shots.len()]).collect();
     let (truths, sets) = lab.truths(&cut);
     let mut faults = Vec::new();
     for forgets in [false, true] {
@@ -145,12 +154,15 @@ pub fn a_camera_cut_hides_nothing(gpu: &Gpu, subject: &Subject, case: &Case) -> 
             let place = format!("{}, {}, frame {frame}, forgets: {forgets}", subject.options.label(), case.name);
             faults.extend(faults_of(&place, &error_of(&truths[frame], &take)));
         }
-        let first_run = { lab.make(subject, &sets) };
-        let mut fresh = first_run;
+        let mut fresh = lab.make(subject, &sets);
         let expected = lab.film(&mut *fresh, &cut);
         method.forget().unwrap();
         let again = lab.film(&mut *method, &cut);
-        faults.extend(film_differences(&format!("{}, {}, after forgetting", subject.options.label(), case.name), &expected, &again));
+        faults.extend(film_differences(
+            &format!("{}, {}, after forgetting", subject.options.label(), case.name),
+            &expected,
+            &again,
+        ));
     }
     faults
 }
@@ -204,7 +216,9 @@ pub fn a_still_camera_shows_one_picture(gpu: &Gpu, subject: &Subject, case: &Cas
     let takes = lab.film(&mut *method, &shots);
     let pairs = takes[1..].windows(2).enumerate();
     let changed = pairs.filter(|(_, pair)| pair[0].images != pair[1].images);
-    changed.map(|(frame, _)| format!("{}, {}: flickers in frame {}", subject.options.label(), case.name, frame + 2)).collect()
+    changed
+        .map(|(frame, _)| format!("{}, {}: flickers in frame {}", subject.options.label(), case.name, frame + 2))
+        .collect()
 }
 
 /// Exact at sizes that pyramids get wrong.
@@ -240,7 +254,8 @@ macro_rules! exact_method_tests {
         fn no_visible_object_is_culled() {
             let gpu = gpu();
             let subject = Subject::named($id);
-            let faults = worlds::special().into_iter().flat_map(|case| laws::no_visible_object_is_culled(&gpu, &subject, &case));
+            let faults =
+                worlds::special().into_iter().flat_map(|case| laws::no_visible_object_is_culled(&gpu, &subject, &case));
             assert_none(&faults.collect::<Vec<_>>());
         }
 
@@ -254,7 +269,8 @@ macro_rules! exact_method_tests {
         fn the_order_of_objects_does_not_matter() {
             let gpu = gpu();
             let cases = worlds::special().into_iter();
-            let faults = cases.flat_map(|case| laws::the_order_of_objects_does_not_matter(&gpu, &Subject::named($id), &case));
+            let faults =
+                cases.flat_map(|case| laws::the_order_of_objects_does_not_matter(&gpu, &Subject::named($id), &case));
             assert_none(&faults.collect::<Vec<_>>());
         }
 
@@ -282,7 +298,8 @@ macro_rules! exact_method_tests {
         fn decisions_do_not_depend_on_the_pass() {
             let gpu = gpu();
             let cases = worlds::special().into_iter();
-            let faults = cases.flat_map(|case| laws::decisions_do_not_depend_on_the_pass(&gpu, &Subject::named($id), &case));
+            let faults =
+                cases.flat_map(|case| laws::decisions_do_not_depend_on_the_pass(&gpu, &Subject::named($id), &case));
             assert_none(&faults.collect::<Vec<_>>());
         }
 
@@ -290,7 +307,8 @@ macro_rules! exact_method_tests {
         fn a_still_camera_shows_one_picture() {
             let gpu = gpu();
             let cases = worlds::special().into_iter();
-            let faults = cases.flat_map(|case| laws::a_still_camera_shows_one_picture(&gpu, &Subject::named($id), &case));
+            let faults =
+                cases.flat_map(|case| laws::a_still_camera_shows_one_picture(&gpu, &Subject::named($id), &case));
             assert_none(&faults.collect::<Vec<_>>());
         }
 

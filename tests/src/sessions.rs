@@ -27,7 +27,16 @@ pub const RUNS: [(&str, f64, &str); 10] = [
 /// If there is no such scene or path.
 pub fn open(gpu: &Gpu, (scene, scale, path): (&str, f64, &str), frames: usize) -> Session {
     let path = Some(path.to_owned());
-    let options = SessionOptions { scene: scene.into(), scale, path, frames, size: [320, 180], ..SessionOptions::default() };
+    let size = [320, 180];
+    let options = SessionOptions {
+        scene: scene.into(),
+        scale,
+        path,
+        whole_path: true,
+        frames,
+        size,
+        ..SessionOptions::default()
+    };
     Session::on(gpu, options).unwrap_or_else(|error| panic!("{scene}: {error:#}"))
 }
 

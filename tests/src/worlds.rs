@@ -1,6 +1,6 @@
 //! Small worlds, each hard in one way, with a camera that stands still, moves, turns and jumps.
 
-mod special;
+pub mod special;
 
 pub use special::{special, special_projections};
 
@@ -49,9 +49,10 @@ impl Maker {
 
     /// Places a mesh, in a colour of its own.
     pub fn place(&mut self, mesh: u32, world_from_object: DAffine3) {
-        let colour = self.random.as_mut().map_or([1.0; 4], |random| {
-            [random.unit() as f32, random.unit() as f32, random.unit() as f32, 1.0]
-        });
+        let colour = self
+            .random
+            .as_mut()
+            .map_or([1.0; 4], |random| [random.unit() as f32, random.unit() as f32, random.unit() as f32, 1.0]);
         let name = format!("{} {}", self.scene.meshes[mesh as usize].name, self.scene.objects.len());
         let plain = Object { name, mesh, world_from_object, colour, dynamic: false, translucent: false, masked: false };
         self.scene.objects.push(plain);

@@ -41,5 +41,8 @@ fn what_a_wall_hides_is_culled() {
     // The third frame is the first that draws only what its predecessor, with all of the depth, has seen.
     let drawn = films.map(|film| film[2].drawn.objects.iter().filter(|drawn| **drawn).count());
     let visible = truths[2].visible_count();
-    assert!(drawn[1] >= visible && drawn[1] - visible < (drawn[0] - visible) / 4, "of {visible}: frustum, hzb {drawn:?}");
+    assert!(
+        drawn[1] >= visible && drawn[1] - visible < (drawn[0] - visible) / 4,
+        "of {visible}: frustum, hzb {drawn:?}"
+    );
 }

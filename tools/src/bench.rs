@@ -7,7 +7,7 @@ use crate::session::Session;
 use crate::stats;
 use crate::truth::RunTruth;
 use anyhow::{Context, Result};
-use culling::{Entry, Options, VisibleSets};
+use culling::{Entry, Options, VisibleSets, Work};
 use engine::{Capture, FrameReport};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -50,6 +50,7 @@ struct Records {
     triangles: Vec<u64>,
     draws: Vec<u64>,
     overdraw: Vec<f64>,
+    work: Vec<Work>,
 }
 
 /// Runs the benchmark.
@@ -159,10 +160,15 @@ impl CaptureOrder {
 }
 
 impl Records {
+    fn counted(&self, of: fn(&Work) -> u64) -> Vec<u64> {
+        self.work.iter().map(of).collect()
+    }
+
     fn push(&mut self, measured: Measured) {
         self.triangles.push(measured.drawn.triangles);
         self.draws.push(measured.drawn.draws);
         self.overdraw.push(measured.overdraw);
+        self.work.push(measured.work);
         self.errors.push(measured.error);
     }
 }
@@ -182,6 +188,10 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         triangles_mean: mean(&records.triangles),
         draws_mean: mean(&records.draws),
         overdraw_mean: stats::mean(&records.overdraw),
+        queries_mean: mean(&records.counted(|work| work.queries)),
+        rays_mean: mean(&records.counted(|work| work.rays)),
+        boxes_mean: mean(&records.counted(|work| work.boxes)),
+        node_visits_mean: mean(&records.counted(|work| work.node_visits)),
         device_memory_mib: shared_mib + contender.memory_mib,
         frames: frames(frame_ms, records),
         ..results::Method::default()
@@ -210,6 +220,8 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
         triangles: records.triangles.clone(),
         draws: records.draws.clone(),
         overdraw: records.overdraw.clone(),
+        queries: records.counted(|work| work.queries),
+        rays: records.counted(|work| work.rays),
         ..Frames::default()
     }
 }

@@ -130,6 +130,12 @@ pub struct Method {
     pub queries_mean: f64,
     /// Rays cast.
     pub rays_mean: f64,
+    /// Boxes rasterised to test what is in them.
+    #[serde(default)]
+    pub boxes_mean: f64,
+    /// Nodes that rays looked at.
+    #[serde(default)]
+    pub node_visits_mean: f64,
     /// Device memory that the method holds.
     pub device_memory_mib: f64,
     /// The measures of each frame.

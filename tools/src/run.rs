@@ -3,7 +3,7 @@
 use crate::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::session::Session;
 use anyhow::{Context, Result};
-use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets};
+use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, Work};
 use engine::FrameReport;
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ pub struct Measured {
     pub drawn: Drawn,
     /// Fragments that passed the early tests, over the pixels that show something; 0 if none does.
     pub overdraw: f64,
+    /// Queries, boxes and rays.
+    pub work: Work,
     /// The pictures.
     pub images: FrameImages,
 }
@@ -60,7 +62,10 @@ impl Contender {
     /// Runs one frame with the item buffer on and compares it with the truth.
     pub fn measured(&mut self, session: &mut Session, frame: usize, truth: &Truth) -> Result<Measured> {
         let view = session.look(frame)?;
+        self.method.count_work(true);
         let report = self.run(session, &view, true)?;
+        self.method.count_work(false);
+        let work = self.method.work()?;
         let images = session.targets.read()?;
         let drawn = drawn_objects(&session.gpu, &session.world, &report)?;
         let error = compare(truth, &images, &drawn.objects)
@@ -69,7 +74,7 @@ impl Contender {
         let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
         let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
         let overdraw = if covered == 0 { 0.0 } else { fragments as f64 / covered as f64 };
-        Ok(Measured { error, drawn, overdraw, images })
+        Ok(Measured { error, drawn, overdraw, work, images })
     }
 
     /// Runs one frame through a view, with or without the item buffer.

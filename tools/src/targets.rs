@@ -29,6 +29,7 @@ impl Targets {
             colour: Some((self.colour.view(), Format::Colour)),
             item: None,
             depth: self.depth.view(),
+            depth_read_only: false,
         }
     }
 

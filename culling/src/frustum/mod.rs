@@ -22,7 +22,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     Ok(Box::new(Frustum {
         kept: Buffer::new(setup.gpu, "frustum.kept", setup.world.len(), Placement::Storage)?,
         list: DrawList::new(setup.gpu, "frustum.list", setup.world)?,
-        still: Still::new(setup.options, 1),
+        still: Still::new(setup.options),
     }))
 }
 

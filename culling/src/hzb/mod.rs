@@ -49,7 +49,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         late: DrawList::new(gpu, "hzb.late", world)?,
         pyramid: None,
         texels: setup.options.number("texels"),
-        still: Still::new(setup.options, SETTLED_AFTER),
+        still: Still::new(setup.options).settled_after(SETTLED_AFTER),
     }))
 }
 

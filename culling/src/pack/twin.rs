@@ -32,3 +32,8 @@ pub fn write_commands(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]
     };
     (0..flags.len()).filter(|object| flags[*object] != 0).map(command).collect()
 }
+
+/// The indices of flagged objects, in order; their number is the draw's instances. Twin of `pack/write_indices`.
+pub fn write_indices(flags: &[u32]) -> Vec<u32> {
+    (0..flags.len() as u32).filter(|object| flags[*object as usize] != 0).collect()
+}

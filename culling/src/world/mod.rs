@@ -8,6 +8,7 @@ mod view;
 
 pub use drawn::{drawn_objects, Drawn};
 pub use still::{Still, SKIP_OPTION};
+pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};
 
 use crate::pack::DrawList;
@@ -49,6 +50,7 @@ struct Host {
     scene_object: Vec<u32>,
     object_of_scene: Vec<u32>,
     bounds: WorldBounds,
+    boxes: Vec<scenes::Aabb>,
     object_meshes: Vec<u32>,
     static_objects: Vec<Object>,
     flags: Vec<u32>,
@@ -84,6 +86,7 @@ impl World {
                 object_of_scene: upload::inverse(&flat.scene_object),
                 scene_object: flat.scene_object,
                 bounds: flat.world_bounds,
+                boxes: flat.boxes,
                 object_meshes: flat.object_meshes,
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
                 static_objects: if moving == 0 { Vec::new() } else { flat.objects },
@@ -142,7 +145,8 @@ impl World {
                 let mesh = host.object_meshes[index as usize];
                 let still = host.static_objects[index as usize];
                 let object = Object { colour: still.colour, ..upload::object(transform, still.colour) };
-                let bounds = upload::bounds(&host.bounds.of(mesh, transform), transform, host.flags[index as usize]);
+                host.boxes[index as usize] = host.bounds.of(mesh, transform);
+                let bounds = upload::bounds(&host.boxes[index as usize], transform, host.flags[index as usize]);
                 MovedObject { index, object, bounds }
             })
             .collect();
@@ -172,6 +176,19 @@ impl World {
     pub fn draw(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
         for draw in list.draws(self) {
             self.draw_indirect(f, draw, view, target);
+        }
+    }
+
+    /// Draws what a list holds, and sets the flag of each object of which a fragment passes the early tests: colour, depth
+    /// and visibility in one pass (EOVC thesis III.2).
+    pub fn draw_flagged(&self, f: &mut Frame, list: &DrawList, visible: BufferRef<u32>, view: &View, target: &Target) {
+        let (objects, view) = (self.objects.all(), view.gpu());
+        for draw in list.draws(self) {
+            if target.item.is_some() {
+                f.draw(draw::ObjectsItemsAndFlags { objects, visible, view }, draw, target);
+            } else {
+                f.draw(draw::ObjectsAndFlags { objects, visible, view }, draw, target);
+            }
         }
     }
 
@@ -250,6 +267,11 @@ impl World {
     /// Objects by kind of primitive.
     pub fn ranges(&self) -> &[Range] {
         &self.ranges
+    }
+
+    /// Bounds in the world of every object, in f64, where they are now.
+    pub fn host_bounds(&self) -> &[scenes::Aabb] {
+        &self.host.boxes
     }
 
     /// Bounds as they are on the GPU now; for tests.

@@ -23,10 +23,15 @@ impl Still {
     /// Why stages are left out while it holds.
     pub const REASON: &'static str = "camera and objects unchanged";
 
-    /// Follows the method's `skip` option. The method's lists no longer change from the `settled_after`th frame on that
-    /// sees what the frame before it saw: 1 if they depend on this frame alone, more if they also depend on earlier ones.
-    pub fn new(options: &Options, settled_after: u32) -> Self {
-        Still { enabled: options.flag("skip"), settled_after, unchanged: 0, last: None }
+    /// Follows the method's `skip` option, for lists that depend on this frame alone.
+    pub fn new(options: &Options) -> Self {
+        Still { enabled: options.flag("skip"), settled_after: 1, unchanged: 0, last: None }
+    }
+
+    /// For lists that also depend on earlier frames: they no longer change from the `frames`th frame on that sees what the
+    /// frame before it saw.
+    pub fn settled_after(self, frames: u32) -> Self {
+        Still { settled_after: frames, ..self }
     }
 
     /// True if this frame sees exactly what the last ones saw, and their lists have settled. Call once a frame.

@@ -16,6 +16,7 @@ pub(super) struct Flat {
     pub(super) meshes: Vec<MeshRange>,
     pub(super) objects: Vec<Object>,
     pub(super) bounds: Vec<Bounds>,
+    pub(super) boxes: Vec<Aabb>,
     pub(super) object_meshes: Vec<u32>,
     pub(super) commands: Vec<DrawCommand>,
     pub(super) ranges: Vec<Range>,
@@ -30,12 +31,15 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
     scene_object.sort_by_key(topology);
     let world_bounds = WorldBounds::new(scene);
     let (mut objects, mut bounds, mut object_meshes, mut commands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut boxes = Vec::new();
     for (index, scene_index) in scene_object.iter().enumerate() {
         let from = &scene.objects[*scene_index as usize];
         let wide = scene.meshes[from.mesh as usize].topology != Topology::Triangles;
         let flags = if wide { OBJECT_WIDE_RASTER } else { 0 } | if from.dynamic { OBJECT_DYNAMIC } else { 0 };
         objects.push(object(&from.world_from_object, colour(from.colour)));
-        bounds.push(self::bounds(&world_bounds.of(from.mesh, &from.world_from_object), &from.world_from_object, flags));
+        let aabb = world_bounds.of(from.mesh, &from.world_from_object);
+        bounds.push(self::bounds(&aabb, &from.world_from_object, flags));
+        boxes.push(aabb);
         object_meshes.push(from.mesh);
         let mesh = meshes[from.mesh as usize];
         commands.push(DrawCommand {
@@ -47,7 +51,7 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
         });
     }
     let ranges = ranges(scene_object.iter().map(|object| scene.meshes[scene.objects[*object as usize].mesh as usize].topology));
-    Flat { vertices, indices, meshes, objects, bounds, object_meshes, commands, ranges, scene_object, world_bounds }
+    Flat { vertices, indices, meshes, objects, bounds, boxes, object_meshes, commands, ranges, scene_object, world_bounds }
 }
 
 fn geometry(meshes: &[Mesh]) -> (Vec<ObjectsVertex>, Vec<u32>, Vec<MeshRange>) {
@@ -112,7 +116,7 @@ pub(super) fn object(world_from_object: &DAffine3, colour: u32) -> Object {
 const SPLIT_ERROR: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// Bounds as the GPU takes them, rounded outward; bounds that are not finite in f32 are flagged to be kept always.
-pub(super) fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
+pub fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
     let centre = box_.centre();
     let pad = SPLIT_ERROR * (centre.abs() + world_from_object.translation.abs());
     // The box is measured from the centre as the GPU has it, so that the split's own rounding is inside too.

@@ -100,6 +100,8 @@ mod tests {
     use crate::model::Aabb;
     use glam::DVec3;
 
+    type Plant<'a> = (&'a str, &'a dyn Fn(&mut Bvh));
+
     fn row() -> Bvh {
         let boxes: Vec<Aabb> =
             (0..6).map(|x| DVec3::splat(f64::from(x))).map(|at| Aabb { min: at, max: at + 0.5 }).collect();
@@ -110,7 +112,7 @@ mod tests {
     fn each_planted_fault_is_found() {
         assert_eq!(row().validate(), Ok(()));
         let leaf = row().leaf_of_object[3] as usize;
-        let plants: [(&str, &dyn Fn(&mut Bvh)); 10] = [
+        let plants: [Plant; 10] = [
             ("a box that lets a child out", &|bvh| bvh.nodes[0].bounds.max.y -= 0.1),
             ("a box too large", &|bvh| bvh.nodes[0].bounds.max.y += 0.1),
             ("a broken leaf box", &|bvh| bvh.nodes[leaf].bounds.min.x = f64::NAN),

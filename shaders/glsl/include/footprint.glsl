@@ -9,8 +9,8 @@
 // triangle at the centre, which may lie outside it: snapping moves each vertex by up to snap_px / 2 in x and y, and so an
 // edge by up to 0.71 snap_px. That adds at most 0.71 snap_px / h times the triangle's depth range, for a triangle h pixels
 // high at its lowest (measured on lavapipe over 13,000 adverse triangles: 0.5 snap_px / h). A line's pixels lie up to a
-// pixel past its ends, and its depth goes on with its slope: at most (1 + snap_px) / l for a line l pixels long (measured:
-// see tests/tests/method_hzb/footprint.rs). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8 pixel. Thinner slivers and shorter
+// pixel past its ends, and its depth goes on with its slope: at most (1 + snap_px) / l for a line l pixels long (measured
+// on lavapipe: 0.5 / l). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8 pixel. Thinner slivers and shorter
 // lines that span most of their box's depth range are outside the documented raster conditions; those of a dense mesh are
 // not, as they span little of it.
 #ifndef FOOTPRINT_GLSL

@@ -1,5 +1,5 @@
-// The vertex work of draw/objects and draw/objects_and_items: the same arithmetic, so that both give the same pixels.
-// ITEM_BUFFER adds who owns the pixel.
+// The vertex work of every draw/objects* stage: the same arithmetic, so that all give the same pixels.
+// PASS_ITEM tells the fragment shader whose it is.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "transform.glsl"
@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer Objects { Object items[]; }
 layout(push_constant, scalar) uniform Push { View view; } push;
 
 layout(location = 0) out vec4 shade;
-#ifdef ITEM_BUFFER
+#ifdef PASS_ITEM
 layout(location = 1) flat out uint item;
 #endif
 
@@ -37,7 +37,7 @@ void main() {
     float lambert = size > 0.0 ? abs(dot(normal, vec3(0.40, 0.82, 0.41))) / size : 1.0;
     vec4 colour = unpackUnorm4x8(object.colour);
     shade = vec4(colour.rgb * (0.25 + 0.75 * lambert), colour.a);
-#ifdef ITEM_BUFFER
+#ifdef PASS_ITEM
     item = uint(gl_InstanceIndex);
 #endif
 }

@@ -81,4 +81,23 @@ struct PyramidLevel {
     uint width;
     uint height;
 };
+
+// What box rasterisation and ray casting look through: more than push constants hold.
+struct BoxView {
+    CullView view;
+    vec4 eye;               // the eye relative to the camera: (0, 0, 0, 1), or a direction with w = 0
+    vec3 origin[3];         // a pixel's ray starts at origin[0] + x origin[1] + y origin[2], x and y in -1..1
+    vec3 direction[3];      // and goes along direction[0] + x direction[1] + y direction[2]
+};
+
+// A node of the geometry-level hierarchy. Children lie side by side: first_child and first_child + 1.
+struct TreeNode {
+    Bounds bounds;
+    uint first_child;       // or the object of a leaf
+    uint parent;            // TREE_NONE for the root
+    uint is_leaf;
+    uint object_count;      // leaves below, itself included
+};
+
+const uint TREE_NONE = 0xffffffffu;
 #endif

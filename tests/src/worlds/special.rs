@@ -72,7 +72,7 @@ fn touching_boxes() -> Case {
 }
 
 /// The same thing at the same place several times, and squares that share a plane.
-fn ties() -> Case {
+pub fn ties() -> Case {
     let mut maker = Maker::new("ties");
     let mut random = Random::new(13);
     let (cube, square) = (maker.mesh(cube()), maker.mesh(square()));

@@ -13,7 +13,8 @@ const BOXES: usize = 10_000;
 fn run(gpu: &Gpu, bounds: &[Bounds], view: CullView) -> Vec<u32> {
     let input = Buffer::with_data(gpu, "test.bounds", bounds, Placement::Storage).unwrap();
     let kept = Buffer::with_data(gpu, "test.kept", &vec![7u32; bounds.len()], Placement::Storage).unwrap();
-    let stage = shaders::frustum::TestBounds { bounds: input.all(), kept: kept.all(), view, object_count: bounds.len() as u32 };
+    let stage =
+        shaders::frustum::TestBounds { bounds: input.all(), kept: kept.all(), view, object_count: bounds.len() as u32 };
     let mut f = gpu.frame();
     f.dispatch(stage, bounds.len() as u32);
     f.finish().unwrap();
@@ -78,7 +79,7 @@ fn boxes_are_kept_as_twin_and_oracle_say() {
                 if margin < -twin::ROUNDING_BAND {
                     assert_eq!(*kept, 0, "{name}, {away} m out: {bound:?} is outside by {margin:e} but was kept");
                 }
-                let in_band = margin < -twin::KEPT_BAND && margin >= -twin::ROUNDING_BAND;
+                let in_band = (-twin::ROUNDING_BAND..-twin::KEPT_BAND).contains(&margin);
                 assert!(kept == twin || in_band, "{name}: stage {kept}, twin {twin}, margin {margin:e}: {bound:?}");
             }
         }
@@ -98,7 +99,12 @@ fn boxes_without_a_meaning_are_kept() {
     for centre in odd {
         for half in odd {
             let flags = if centre.is_finite() && half.is_finite() && half >= 0.0 { 0 } else { OBJECT_ALWAYS_KEPT };
-            bounds.push(Bounds { centre_high: [centre; 3], centre_low: [0.0; 3], half_extent: [half.max(0.0); 3], flags });
+            bounds.push(Bounds {
+                centre_high: [centre; 3],
+                centre_low: [0.0; 3],
+                half_extent: [half.max(0.0); 3],
+                flags,
+            });
         }
     }
     let kept = run(&gpu, &bounds, view);

@@ -34,7 +34,8 @@ fn triangles(random: &mut Random, shot: &Shot, topology: Topology) -> Scene {
             (Topology::Lines, kind) => thrown(random, size, kind == 1, [2, 2, 6][index / 3 % 3]),
             (_, kind) => thrown(random, size, kind == 1, 6),
         };
-        let corners: Vec<DVec3> = corners_px.iter().map(|(px, deeper)| unprojected(*px, depth * (1.0 - deeper))).collect();
+        let corners: Vec<DVec3> =
+            corners_px.iter().map(|(px, deeper)| unprojected(*px, depth * (1.0 - deeper))).collect();
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let positions: Vec<Vec3> = corners.iter().map(|corner| (*corner - centre).as_vec3()).collect();
         let indices = (0..corners.len() as u32).collect();
@@ -100,7 +101,11 @@ fn seen(topology: Topology) -> Covered {
     }
     println!(
         "{topology:?}: {} objects, {} pixels; outside by at most {:.5} px; slack by height {:.2?}; {} pixels too near",
-        all.objects, all.pixels, all.worst_outside_px, all.worst_slack, all.too_near.len()
+        all.objects,
+        all.pixels,
+        all.worst_outside_px,
+        all.worst_slack,
+        all.too_near.len()
     );
     all
 }
@@ -118,8 +123,16 @@ fn footprints_hold_every_pixel_of_triangles() {
     harness::assert_none(&all.outside);
     let high = all.too_near.iter().filter(|near| near.height_px >= 0.125).map(|near| near.text.clone());
     harness::assert_none(&high.collect::<Vec<_>>());
-    for near in &all.too_near { println!("{}", near.text); }
-    assert!(all.objects > 3000 && all.pixels > 50_000, "too little was seen: {} objects, {} pixels", all.objects, all.pixels);
+    // Thinner slivers are outside the raster conditions, but the derivation still bounds them.
+    let unexplained =
+        all.too_near.iter().filter(|near| near.slack > 0.75 / near.height_px).map(|near| near.text.clone());
+    harness::assert_none(&unexplained.collect::<Vec<_>>());
+    assert!(
+        all.objects > 3000 && all.pixels > 50_000,
+        "too little was seen: {} objects, {} pixels",
+        all.objects,
+        all.pixels
+    );
 }
 
 #[test]

@@ -10,8 +10,28 @@ use shaders::types::PyramidLevel;
 use sightline::targets::Targets;
 
 const SIZES: [[u32; 2]; 22] = [
-    [1, 1], [2, 1], [1, 2], [3, 1], [1, 257], [257, 1], [2, 2], [3, 3], [7, 5], [8, 8], [9, 8], [15, 17], [16, 16], [31, 33],
-    [63, 65], [64, 64], [65, 63], [127, 129], [161, 97], [255, 257], [513, 2], [640, 359],
+    [1, 1],
+    [2, 1],
+    [1, 2],
+    [3, 1],
+    [1, 257],
+    [257, 1],
+    [2, 2],
+    [3, 3],
+    [7, 5],
+    [8, 8],
+    [9, 8],
+    [15, 17],
+    [16, 16],
+    [31, 33],
+    [63, 65],
+    [64, 64],
+    [65, 63],
+    [127, 129],
+    [161, 97],
+    [255, 257],
+    [513, 2],
+    [640, 359],
 ];
 
 /// Draws small boxes everywhere, so that depths differ from pixel to pixel, and gives depth and pyramid as on the device.
@@ -63,7 +83,7 @@ fn wrong_texels(depth: &[f32], size: [u32; 2], levels: &[PyramidLevel], texels: 
     for (number, level) in levels.iter().enumerate().skip(1) {
         let mut farthest = vec![f32::INFINITY; (level.width * level.height) as usize];
         for (pixel, depth) in depth.iter().enumerate() {
-            let (x, y) = (pixel as u32 % size[0] >> number, pixel as u32 / size[0] >> number);
+            let (x, y) = ((pixel as u32 % size[0]) >> number, (pixel as u32 / size[0]) >> number);
             let texel = &mut farthest[(y * level.width + x) as usize];
             *texel = texel.min(*depth);
         }
@@ -82,7 +102,10 @@ fn pyramids_hold_the_farthest_depth_of_their_pixels_at_any_size() {
         assert_eq!(wrong_texels(&depth, size, &levels, &texels), 0, "stage at {size:?}");
         let twin = twin::pyramid(&depth, size, &levels);
         assert_eq!(wrong_texels(&depth, size, &levels, &twin), 0, "twin at {size:?}");
-        assert!(twin.iter().zip(&texels).all(|(twin, texel)| twin.to_bits() == texel.to_bits()), "stage and twin at {size:?}");
+        assert!(
+            twin.iter().zip(&texels).all(|(twin, texel)| twin.to_bits() == texel.to_bits()),
+            "stage and twin at {size:?}"
+        );
         if size[0] * size[1] > 60 {
             assert!(depth.iter().any(|depth| *depth > 0.0), "nothing was drawn at {size:?}");
         }

@@ -30,7 +30,11 @@ fn input(random: &mut Random, shot: &Shot, snap_px: f32, texels: u32) -> Input {
     let holes = random.below(30) + 2;
     let pixels = SIZE[0] as usize * SIZE[1] as usize;
     let depth = |pixel: usize| {
-        if pixel % 1009 < holes { 0.0 } else { depth_at((pixel % SIZE[0] as usize) as f64 / f64::from(SIZE[0])) as f32 }
+        if pixel % 1009 < holes {
+            0.0
+        } else {
+            depth_at((pixel % SIZE[0] as usize) as f64 / f64::from(SIZE[0])) as f32
+        }
     };
     let bound = |random: &mut Random| {
         let (x, y) = (random.range(-1.1, 1.1), random.range(-1.1, 1.1));
@@ -107,7 +111,13 @@ fn bounds_are_seen_as_the_twin_says() {
             for object in 0..BOXES {
                 let place = || format!("{name}, {texels} texels: {:?}", input.bounds[object]);
                 assert!(least[object] <= most[object], "{}", place());
-                assert!((least[object]..=most[object]).contains(&seen[object]), "stage {}, twin {}: {}", seen[object], twin[object], place());
+                assert!(
+                    (least[object]..=most[object]).contains(&seen[object]),
+                    "stage {}, twin {}: {}",
+                    seen[object],
+                    twin[object],
+                    place()
+                );
                 assert_eq!(newly[object], u32::from(seen[object] == 1 && input.seen[object] == 0), "{}", place());
                 differ += usize::from(seen[object] != twin[object]);
                 open += usize::from(least[object] != most[object]);
@@ -118,6 +128,9 @@ fn bounds_are_seen_as_the_twin_says() {
     }
     println!("{all} boxes, {visible} visible, {differ} differ from the twin, {open} within roundings of a tie");
     assert!(visible > all / 5 && visible < all * 4 / 5, "{visible} of {all} visible: the input proves little");
-    assert!(open < all / 50, "{open} of {all} boxes are within roundings of a tie: the band is too wide to prove anything");
+    assert!(
+        open < all / 50,
+        "{open} of {all} boxes are within roundings of a tie: the band is too wide to prove anything"
+    );
     assert!(differ < all / 1000, "stage and twin differ in {differ} of {all}");
 }

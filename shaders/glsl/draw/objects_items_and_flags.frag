@@ -1,0 +1,19 @@
+// draw/objects_items_and_flags: the colour, who owns the pixel, and a flag for the object.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+layout(early_fragment_tests) in;
+
+layout(location = 0) in vec4 shade;
+layout(location = 1) flat in uint item;
+
+layout(set = 0, binding = 1, scalar) writeonly buffer Visible { uint items[]; } visible;
+
+layout(location = 0) out vec4 colour;
+layout(location = 1) out uint owner;
+
+void main() {
+    colour = shade;
+    owner = item;
+    // A plain store: every writer writes the same, and an atomic costs 20 times as much.
+    visible.items[item] = 1u;
+}

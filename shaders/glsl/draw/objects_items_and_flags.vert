@@ -1,0 +1,5 @@
+// draw/objects_items_and_flags: draw/objects_and_flags with the item buffer beside the colour.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define PASS_ITEM
+#include "shade.glsl"

@@ -1,0 +1,23 @@
+// roc/test_boxes: the boxes of objects not drawn yet, against the depth of those that were. No colour, no depth is written
+// (EOVC thesis II.2, ROC).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "box.glsl"
+
+layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
+layout(set = 0, binding = 1, scalar) readonly buffer Listed { uint items[]; } listed;
+layout(set = 0, binding = 2, scalar) readonly buffer ViewBlock { BoxView items[]; } views;
+
+layout(location = 0) flat out uint object;
+
+invariant gl_Position;
+
+void main() {
+    object = listed.items[gl_InstanceIndex];
+    BoxView box_view = views.items[0];
+    CullView view = box_view.view;
+    Bounds bound = grown(bounds.items[object], view);
+    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
+    vec3 corner = near_faces_corner(centre, bound.half_extent, box_view.eye, uint(gl_VertexIndex));
+    gl_Position = view.clip_from_relative * vec4(corner, 1.0);
+}

@@ -1,0 +1,4 @@
+//! The laws of `eovc`.
+
+harness::exact_method_tests!("eovc");
+harness::skipping_method_tests!("eovc");

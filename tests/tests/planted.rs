@@ -1,0 +1,304 @@
+//! The harness can fail: each law is broken on purpose by a method with one defect, and the law must say so.
+
+use culling::frustum::OPTIONS;
+use culling::hzb::Pyramid;
+use culling::{DrawList, Method, Options, Setup, View, World};
+use engine::{Buffer, Error, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
+use harness::footprints::covered;
+use harness::{assert_caught, assert_none, gpu, laws, worlds, Lab, Subject};
+use shaders::types::{Bounds, DrawCommand, PyramidLevel};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// What is wrong with a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Defect {
+    Nothing,
+    WrongSign,
+    ShrunkBounds,
+    DroppedDraw,
+    StaleFlags,
+    ReversedEachSecondFrame,
+    ReversedEachSecondInstance,
+    LooksAtTheTarget,
+    NearPyramid,
+    OffByOneLevel,
+    ForgottenLatePhase,
+    NeverForgets,
+}
+
+static INSTANCES: AtomicU32 = AtomicU32::new(0);
+
+struct Broken {
+    defect: Defect,
+    gpu: Gpu,
+    skip: bool,
+    frames: u32,
+    instance: u32,
+    commands: Buffer<DrawCommand>,
+    reversed: Buffer<DrawCommand>,
+    shrunk: Buffer<Bounds>,
+    seen: Buffer<u32>,
+    newly: Buffer<u32>,
+    lists: [DrawList; 2],
+    pyramid: Option<Pyramid>,
+}
+
+fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
+    let (gpu, world) = (setup.gpu, setup.world);
+    let mut commands = world.read_all_commands()?;
+    let reversed: Vec<DrawCommand> = commands.iter().rev().copied().collect();
+    if defect == Defect::DroppedDraw {
+        // The wall of `worlds::walled`.
+        commands[0].instance_count = 0;
+    }
+    let mut shrunk = world.read_bounds()?;
+    shrunk.iter_mut().for_each(|bounds| bounds.half_extent = bounds.half_extent.map(|half| 0.3 * half));
+    let words = |name| Buffer::new(gpu, name, world.len(), Placement::Storage);
+    Ok(Box::new(Broken {
+        defect,
+        gpu: gpu.clone(),
+        skip: setup.options.flag("skip"),
+        frames: 0,
+        instance: INSTANCES.fetch_add(1, Ordering::Relaxed),
+        commands: Buffer::with_data(gpu, "broken.commands", &commands, Placement::Storage)?,
+        reversed: Buffer::with_data(gpu, "broken.reversed", &reversed, Placement::Storage)?,
+        shrunk: Buffer::with_data(gpu, "broken.shrunk", &shrunk, Placement::Storage)?,
+        seen: words("broken.seen")?,
+        newly: words("broken.newly")?,
+        lists: [DrawList::new(gpu, "broken.early", world)?, DrawList::new(gpu, "broken.late", world)?],
+        pyramid: None,
+    }))
+}
+
+impl Method for Broken {
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> culling::Result<()> {
+        self.frames += 1;
+        world.update(f);
+        f.clear(target);
+        match self.defect {
+            Defect::DroppedDraw => world.draw_commands(f, self.commands.all(), view, target),
+            Defect::ReversedEachSecondFrame if self.frames % 2 == 0 => {
+                world.draw_commands(f, self.reversed.all(), view, target)
+            }
+            Defect::ReversedEachSecondInstance if self.instance % 2 == 0 => {
+                world.draw_commands(f, self.reversed.all(), view, target)
+            }
+            Defect::ReversedEachSecondFrame | Defect::ReversedEachSecondInstance => world.draw_all(f, view, target),
+            Defect::LooksAtTheTarget if target.item.is_some() => world.draw_all(f, view, target),
+            Defect::Nothing
+            | Defect::NeverForgets
+            | Defect::NearPyramid
+            | Defect::OffByOneLevel
+            | Defect::ForgottenLatePhase => {
+                self.two_phases(f, world, view, target)?;
+            }
+            _ => self.frustum(f, world, view, target),
+        }
+        Ok(())
+    }
+
+    fn forget(&mut self) -> culling::Result<()> {
+        if self.defect != Defect::NeverForgets {
+            self.frames = 0;
+            self.seen.write(&vec![0; self.seen.len()])?;
+        }
+        Ok(())
+    }
+}
+
+impl Broken {
+    fn frustum(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+        let mut cull = view.cull();
+        if self.defect == Defect::WrongSign {
+            cull.clip_from_relative.iter_mut().for_each(|column| column[3] = -column[3]);
+        }
+        let bounds = if self.defect == Defect::ShrunkBounds { self.shrunk.all() } else { world.bounds() };
+        if self.defect != Defect::StaleFlags || self.frames == 1 || !self.skip {
+            let object_count = world.len() as u32;
+            f.dispatch(
+                shaders::frustum::TestBounds { bounds, kept: self.seen.all(), view: cull, object_count },
+                object_count,
+            );
+            self.lists[0].pack(f, world, self.seen.all());
+        } else {
+            f.skip("frustum/test_bounds", culling::world::Still::REASON);
+        }
+        world.draw(f, &self.lists[0], view, target);
+    }
+
+    /// `hzb` as it is, but for the defect.
+    fn two_phases(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> culling::Result<()> {
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size)?;
+        let (layout, coarsest_level) = culling::hzb::layout(target.size);
+        // Each level but the finest stands for its finer neighbour.
+        let off_by_one = |level: usize| layout[if level < 2 { level } else { level - 1 }];
+        let off_by_one: Vec<PyramidLevel> = (0..layout.len()).map(off_by_one).collect();
+        let off_by_one = Buffer::with_data(&self.gpu, "broken.levels", &off_by_one, Placement::Storage)?;
+        let texels = layout.iter().map(|level| level.width * level.height).sum::<u32>() as usize;
+        let near = Buffer::with_data(&self.gpu, "broken.near", &vec![1.0f32; texels], Placement::Storage)?;
+        self.lists[0].pack(f, world, self.seen.all());
+        world.draw(f, &self.lists[0], view, target);
+        pyramid.reduce(f, target);
+        let test = shaders::hzb::TestBounds {
+            bounds: world.bounds(),
+            levels: if self.defect == Defect::OffByOneLevel { off_by_one.all() } else { pyramid.levels() },
+            pyramid: if self.defect == Defect::NearPyramid { near.all() } else { pyramid.texels() },
+            seen: self.seen.all(),
+            newly: self.newly.all(),
+            view: view.cull(),
+            object_count: world.len() as u32,
+            coarsest_level,
+            constants: Default::default(),
+        };
+        f.dispatch(test, world.len() as u32);
+        if self.defect != Defect::ForgottenLatePhase || self.frames == 1 {
+            self.lists[1].pack(f, world, self.newly.all());
+            world.draw(f, &self.lists[1], view, target);
+        }
+        Ok(())
+    }
+}
+
+fn subject(make: Make) -> Subject {
+    Subject { options: Options::new("broken", OPTIONS), make }
+}
+
+type Law = fn(&Gpu, &Subject, &worlds::Case) -> Vec<String>;
+type Make = fn(&Setup<'_>) -> culling::Result<Box<dyn Method>>;
+
+/// The law holds for the method without a defect, and names the fault of the one with it.
+fn caught(law: Law, broken: Make, case: &worlds::Case, expected: &str) {
+    let gpu = gpu();
+    assert_none(&law(&gpu, &subject(|setup| make(setup, Defect::Nothing)), case));
+    assert_caught(&law(&gpu, &subject(broken), case), expected);
+}
+
+#[test]
+fn a_wrong_sign_in_the_frustum_is_noticed() {
+    caught(laws::no_visible_object_is_culled, |s| make(s, Defect::WrongSign), &worlds::walled(80), "false negatives");
+}
+
+#[test]
+fn bounds_that_are_too_small_are_noticed() {
+    caught(
+        laws::no_visible_object_is_culled,
+        |s| make(s, Defect::ShrunkBounds),
+        &worlds::walled(300),
+        "differing pixels",
+    );
+}
+
+#[test]
+fn a_dropped_draw_is_noticed() {
+    caught(laws::no_visible_object_is_culled, |s| make(s, Defect::DroppedDraw), &worlds::walled(80), "false negatives");
+}
+
+#[test]
+fn stale_flags_are_noticed() {
+    // From turned away to the full view: the first frame's list lacks nearly everything.
+    let case = worlds::walled(80);
+    let case = case.filmed(vec![case.shots[3], case.shots[0]]);
+    caught(laws::no_visible_object_is_culled, |s| make(s, Defect::StaleFlags), &case, "false negatives");
+    caught(laws::a_camera_cut_hides_nothing, |s| make(s, Defect::StaleFlags), &worlds::walled(80), "false negatives");
+}
+
+#[test]
+fn skipping_too_much_is_noticed() {
+    let (gpu, case) = (gpu(), worlds::walled(80));
+    let stale = laws::skipping_changes_no_pixel(&gpu, &subject(|s| make(s, Defect::StaleFlags)), &case);
+    assert_caught(&stale, "drawn objects differ");
+    assert_caught(&stale, "but a stage was left out");
+    let never = laws::skipping_changes_no_pixel(&gpu, &subject(|s| make(s, Defect::Nothing)), &case);
+    assert_caught(&never, "no stage was left out");
+}
+
+#[test]
+fn memories_that_outlast_forgetting_are_noticed() {
+    caught(
+        laws::a_camera_cut_hides_nothing,
+        |s| make(s, Defect::NeverForgets),
+        &worlds::walled(80),
+        "after forgetting",
+    );
+}
+
+#[test]
+fn unordered_lists_are_noticed() {
+    let ties = worlds::special::ties();
+    caught(laws::a_still_camera_shows_one_picture, |s| make(s, Defect::ReversedEachSecondFrame), &ties, "flickers");
+    caught(
+        laws::two_runs_give_the_same_bytes,
+        |s| make(s, Defect::ReversedEachSecondInstance),
+        &ties,
+        "draw lists differ",
+    );
+}
+
+#[test]
+fn decisions_by_the_target_are_noticed() {
+    caught(
+        laws::decisions_do_not_depend_on_the_pass,
+        |s| make(s, Defect::LooksAtTheTarget),
+        &worlds::walled(80),
+        "draw lists differ",
+    );
+}
+
+#[test]
+fn a_pyramid_of_near_depths_is_noticed() {
+    caught(laws::no_visible_object_is_culled, |s| make(s, Defect::NearPyramid), &worlds::walled(80), "false negatives");
+}
+
+#[test]
+fn a_level_that_is_off_by_one_is_noticed() {
+    caught(
+        laws::no_visible_object_is_culled,
+        |s| make(s, Defect::OffByOneLevel),
+        &worlds::walled(300),
+        "false negatives",
+    );
+}
+
+#[test]
+fn a_missing_late_phase_is_noticed() {
+    caught(
+        laws::no_visible_object_is_culled,
+        |s| make(s, Defect::ForgottenLatePhase),
+        &worlds::walled(80),
+        "false negatives",
+    );
+}
+
+#[test]
+fn footprints_that_are_too_small_are_noticed() {
+    let gpu = gpu();
+    let case = worlds::walled(200);
+    let mut lab = Lab::new(&gpu, &case);
+    let right = covered(&mut lab, &case, |_, _| ());
+    assert!(right.outside.is_empty() && right.too_near.is_empty() && right.objects > 20, "{right:?}");
+    let shrunk = covered(&mut lab, &case, |bounds, _| bounds.half_extent = bounds.half_extent.map(|half| 0.8 * half));
+    assert_caught(&shrunk.outside, "outside its footprint");
+    assert!(!shrunk.too_near.is_empty());
+}
+
+#[test]
+fn a_list_that_claims_more_than_it_holds_is_an_error() {
+    let gpu = gpu();
+    let case = worlds::walled(10);
+    let world = World::new(&gpu, &case.scene).unwrap();
+    let commands = Buffer::<DrawCommand>::new(&gpu, "test.commands", world.len(), Placement::Storage).unwrap();
+    let count = Buffer::with_data(&gpu, "test.count", &[world.len() as u32 + 1], Placement::Storage).unwrap();
+    let draw = IndexedIndirect {
+        vertices: world.vertices().into(),
+        indices: world.indices().into(),
+        commands: commands.all().into(),
+        count: Some(count.all()),
+        max_draws: world.len() as u32,
+        primitives: Primitives::Triangles,
+    };
+    let report = engine::FrameReport { draws: vec![draw], ..Default::default() };
+    match culling::drawn_objects(&gpu, &world, &report) {
+        Err(culling::Error::Engine(Error::Overflow { count, capacity, .. })) => assert_eq!((count, capacity), (12, 11)),
+        other => panic!("an overflow passed for culling: {other:?}"),
+    }
+}

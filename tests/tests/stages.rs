@@ -1,0 +1,6 @@
+//! The stages that methods share, against their twins.
+
+#[path = "stages/pack.rs"]
+mod pack;
+#[path = "stages/world.rs"]
+mod world;

@@ -1,0 +1,141 @@
+//! `pack/*`: commands in object order, at sizes around every limit.
+
+use culling::pack::twin;
+use culling::{DrawList, World};
+use engine::{Buffer, Gpu, Placement};
+use harness::{gpu, worlds, Random};
+use shaders::pack::{CountFlags, ScanCounts, ScanCountsConstants, WriteCommands};
+use shaders::types::{DrawCommand, MeshRange, PACK_CHUNK};
+
+const STORAGE: Placement = Placement::Storage;
+
+fn flags(random: &mut Random, count: usize, share: f64) -> Vec<u32> {
+    // Any value but 0 is a flag.
+    (0..count).map(|_| if random.unit() < share { 1 + random.below(3) as u32 * 0x7fff_ffff } else { 0 }).collect()
+}
+
+/// Counts, starts, total and commands as the stages make them, over the objects from `first` on.
+fn run(
+    gpu: &Gpu,
+    flags: &[u32],
+    first: usize,
+    object_meshes: &[u32],
+    meshes: &[MeshRange],
+) -> (Vec<u32>, Vec<u32>, u32, Vec<DrawCommand>) {
+    let count = flags.len() - first;
+    let chunk_count = count.div_ceil(PACK_CHUNK as usize);
+    let marked = |len: usize| Buffer::with_data(gpu, "test.words", &vec![0xdead_beefu32; len], STORAGE).unwrap();
+    let (counts, starts, total) = (marked(chunk_count), marked(chunk_count), marked(1));
+    let flags = Buffer::with_data(gpu, "test.flags", flags, STORAGE).unwrap();
+    let object_meshes = Buffer::with_data(gpu, "test.object_meshes", object_meshes, STORAGE).unwrap();
+    let meshes = Buffer::with_data(gpu, "test.meshes", meshes, STORAGE).unwrap();
+    let commands = Buffer::<DrawCommand>::new(gpu, "test.commands", flags.len(), STORAGE).unwrap();
+    let (first_object, object_count) = (first as u32, count as u32);
+    let constants = ScanCountsConstants { subgroup_size: gpu.subgroup_size() };
+    let mut f = gpu.frame();
+    f.dispatch(CountFlags { flags: flags.all(), counts: counts.all(), first_object, object_count }, chunk_count as u32);
+    let scan = ScanCounts {
+        counts: counts.all(),
+        starts: starts.all(),
+        total: total.all(),
+        chunk_count: chunk_count as u32,
+        constants,
+    };
+    f.dispatch_groups(scan, 1);
+    let write = WriteCommands {
+        flags: flags.all(),
+        starts: starts.all(),
+        object_meshes: object_meshes.all(),
+        meshes: meshes.all(),
+        commands: commands.all(),
+        first_object,
+        object_count,
+    };
+    f.dispatch(write, chunk_count as u32);
+    f.finish().unwrap();
+    (counts.read().unwrap(), starts.read().unwrap(), total.read().unwrap()[0], commands.read().unwrap())
+}
+
+#[test]
+fn packing_equals_its_twins_at_any_number_of_objects() {
+    let gpu = gpu();
+    let mut random = Random::new(51);
+    for count in [1, 2, 63, 64, 65, 511, 512, 513, 4095, 4096, 100_003] {
+        for share in [0.0, 0.02, 0.5, 1.0] {
+            let flags = flags(&mut random, count, share);
+            let meshes: Vec<_> = (0..5)
+                .map(|mesh| MeshRange { first_index: mesh * 7, index_count: 3 * mesh, vertex_offset: -(mesh as i32) })
+                .collect();
+            let object_meshes: Vec<u32> = (0..count).map(|_| random.below(5) as u32).collect();
+            let first = if count % 3 == 0 { count / 3 } else { 0 };
+            let (counts, starts, total, commands) = run(&gpu, &flags, first, &object_meshes, &meshes);
+            let expected_counts = twin::count_flags(&flags[first..]);
+            let (expected_starts, expected_total) = twin::scan_counts(&expected_counts);
+            assert_eq!(
+                (counts, starts, total),
+                (expected_counts, expected_starts, expected_total),
+                "{count} objects, share {share}"
+            );
+            let mut before = flags.clone();
+            before[..first].fill(0);
+            let expected = twin::write_commands(&before, &object_meshes, &meshes);
+            assert_eq!(&commands[first..first + total as usize], &expected[..], "{count} objects, share {share}");
+            let untouched = commands[..first].iter().chain(&commands[first + total as usize..]);
+            assert!(
+                untouched.into_iter().all(|command| *command == DrawCommand::default()),
+                "{count} objects: written outside the list"
+            );
+        }
+    }
+}
+
+/// lavapipe ends loops without a word after 65,535 rounds: ten million objects must still be below that.
+#[test]
+fn ten_million_flags_are_counted_and_scanned() {
+    let gpu = gpu();
+    let count = 10_000_000u32;
+    let chunk_count = count.div_ceil(PACK_CHUNK);
+    assert_eq!(chunk_count, 156_250);
+    let flags: Vec<u32> = (0..count).map(|object| u32::from(object % 7 == 0 || object > 9_999_000)).collect();
+    let input = Buffer::with_data(&gpu, "test.flags", &flags, STORAGE).unwrap();
+    let words = |len: u32| Buffer::<u32>::new(&gpu, "test.words", len as usize, STORAGE).unwrap();
+    let (counts, starts, total) = (words(chunk_count), words(chunk_count), words(1));
+    let mut f = gpu.frame();
+    f.dispatch(
+        CountFlags { flags: input.all(), counts: counts.all(), first_object: 0, object_count: count },
+        chunk_count,
+    );
+    let constants = ScanCountsConstants { subgroup_size: gpu.subgroup_size() };
+    f.dispatch_groups(
+        ScanCounts { counts: counts.all(), starts: starts.all(), total: total.all(), chunk_count, constants },
+        1,
+    );
+    f.finish().unwrap();
+    let expected = twin::count_flags(&flags);
+    assert_eq!(counts.read().unwrap(), expected);
+    let (expected_starts, expected_total) = twin::scan_counts(&expected);
+    assert_eq!(total.read().unwrap(), [expected_total]);
+    assert_eq!(starts.read().unwrap(), expected_starts);
+}
+
+#[test]
+fn each_kind_of_primitive_is_packed_in_its_own_range() {
+    let gpu = gpu();
+    let case = worlds::special::topologies();
+    let world = World::new(&gpu, &case.scene).unwrap();
+    assert_eq!(world.ranges().len(), 3);
+    let mut random = Random::new(52);
+    let chosen = flags(&mut random, world.len(), 0.4);
+    let buffer = Buffer::with_data(&gpu, "test.flags", &chosen, STORAGE).unwrap();
+    let list = DrawList::new(&gpu, "test.list", &world).unwrap();
+    let targets = sightline::targets::Targets::new(&gpu, case.size).unwrap();
+    let view = culling::View::new(&case.shots[0], case.size, 0, gpu.snap_px());
+    let mut f = gpu.frame();
+    f.clear(&targets.timed());
+    list.pack(&mut f, &world, buffer.all());
+    world.draw(&mut f, &list, &view, &targets.timed());
+    let report = f.finish().unwrap();
+    let drawn = culling::drawn_objects(&gpu, &world, &report).unwrap();
+    assert_eq!(drawn.objects, chosen.iter().map(|flag| *flag != 0).collect::<Vec<_>>());
+    assert_eq!(drawn.draws, chosen.iter().filter(|flag| **flag != 0).count() as u64);
+}
