@@ -4,8 +4,8 @@
 //! in [`METHODS`]; adding one is a folder, a line in that list and a test file (see `culling/README.md`).
 
 pub mod boxes;
-mod error;
 pub mod eovc;
+mod error;
 pub mod frustum;
 pub mod hzb;
 mod method;

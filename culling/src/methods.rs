@@ -20,12 +20,54 @@ pub struct Entry {
 
 /// Every method, in the order in which `--method all` runs them.
 pub const METHODS: &[Entry] = &[
-    Entry { id: "none", title: "no culling", source: "baseline of all papers", guarantee: Guarantee::Exact, options: none::OPTIONS, make: none::make },
-    Entry { id: "frustum", title: "view-frustum culling", source: "Zachmann 2008, VFC; GPU Gems 29.6.4; Kim 2015, III.2", guarantee: Guarantee::Exact, options: frustum::OPTIONS, make: frustum::make },
-    Entry { id: "hzb", title: "two-phase hierarchical-Z culling", source: "Haar & Aaltonen 2015; Lee et al. 2018, 5.1", guarantee: Guarantee::Exact, options: hzb::OPTIONS, make: hzb::make },
-    Entry { id: "roc", title: "raster occlusion culling", source: "EOVC thesis, II.2; Kubisch & Tavenrath 2014", guarantee: Guarantee::Exact, options: roc::OPTIONS, make: roc::make },
-    Entry { id: "eovc", title: "ray-cast occludee groups", source: "EOVC thesis, III", guarantee: Guarantee::Exact, options: eovc::OPTIONS, make: eovc::make },
-    Entry { id: "ref", title: "ideal culling: draws the true visible set", source: "Kim 2015, V; Lee et al. 2018, 5.3; EOVC, IV", guarantee: Guarantee::Exact, options: reference::OPTIONS, make: reference::make },
+    Entry {
+        id: "none",
+        title: "no culling",
+        source: "baseline of all papers",
+        guarantee: Guarantee::Exact,
+        options: none::OPTIONS,
+        make: none::make,
+    },
+    Entry {
+        id: "frustum",
+        title: "view-frustum culling",
+        source: "Zachmann 2008, VFC; GPU Gems 29.6.4; Kim 2015, III.2",
+        guarantee: Guarantee::Exact,
+        options: frustum::OPTIONS,
+        make: frustum::make,
+    },
+    Entry {
+        id: "hzb",
+        title: "two-phase hierarchical-Z culling",
+        source: "Haar & Aaltonen 2015; Lee et al. 2018, 5.1",
+        guarantee: Guarantee::Exact,
+        options: hzb::OPTIONS,
+        make: hzb::make,
+    },
+    Entry {
+        id: "roc",
+        title: "raster occlusion culling",
+        source: "EOVC thesis, II.2; Kubisch & Tavenrath 2014",
+        guarantee: Guarantee::Exact,
+        options: roc::OPTIONS,
+        make: roc::make,
+    },
+    Entry {
+        id: "eovc",
+        title: "ray-cast occludee groups",
+        source: "EOVC thesis, III",
+        guarantee: Guarantee::Exact,
+        options: eovc::OPTIONS,
+        make: eovc::make,
+    },
+    Entry {
+        id: "ref",
+        title: "ideal culling: draws the true visible set",
+        source: "Kim 2015, V; Lee et al. 2018, 5.3; EOVC, IV",
+        guarantee: Guarantee::Exact,
+        options: reference::OPTIONS,
+        make: reference::make,
+    },
 ];
 
 /// The method of that name.

@@ -77,7 +77,11 @@ impl Options {
         let differs = |info: &&OptionInfo| self.text(info.name) != info.default;
         let parts: Vec<_> =
             self.known.iter().filter(differs).map(|info| format!("{}={}", info.name, self.text(info.name))).collect();
-        if parts.is_empty() { self.method.to_owned() } else { format!("{}[{}]", self.method, parts.join(",")) }
+        if parts.is_empty() {
+            self.method.to_owned()
+        } else {
+            format!("{}[{}]", self.method, parts.join(","))
+        }
     }
 }
 

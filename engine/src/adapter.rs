@@ -80,7 +80,14 @@ pub(crate) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<(vk::P
             Err(_) => found.iter().position(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase())),
         },
     };
-    let names = || found.iter().enumerate().map(|(index, (_, info))| format!("{index}: {}", info.name)).collect::<Vec<_>>().join(", ");
+    let names = || {
+        found
+            .iter()
+            .enumerate()
+            .map(|(index, (_, info))| format!("{index}: {}", info.name))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let Some(position) = position else {
         return Err(Error::NoSuchDevice { wanted: wanted.unwrap_or_default().to_owned(), found: names() });
     };
@@ -99,21 +106,36 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> AdapterInfo
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let core = properties.properties;
     let version = core.api_version;
-    let text = |name: std::result::Result<&std::ffi::CStr, _>| name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let text = |name: std::result::Result<&std::ffi::CStr, _>| {
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    };
     let (missing, optional) = features(instance, device, version);
     let cache_key = core.pipeline_cache_uuid.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     AdapterInfo {
         name: text(core.device_name_as_c_str()),
         kind: kind(core.device_type),
         driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())),
-        api: format!("{}.{}.{}", vk::api_version_major(version), vk::api_version_minor(version), vk::api_version_patch(version)),
+        api: format!(
+            "{}.{}.{}",
+            vk::api_version_major(version),
+            vk::api_version_minor(version),
+            vk::api_version_patch(version)
+        ),
         missing,
         optional,
-        max_image_px: core.limits.max_image_dimension2_d.min(core.limits.max_framebuffer_width).min(core.limits.max_framebuffer_height),
+        max_image_px: core
+            .limits
+            .max_image_dimension2_d
+            .min(core.limits.max_framebuffer_width)
+            .min(core.limits.max_framebuffer_height),
         max_storage_bytes: u64::from(core.limits.max_storage_buffer_range),
         subgroup_size: subgroup.subgroup_size,
         snap_px: (0.5f32).powi(core.limits.sub_pixel_precision_bits as i32),
-        timestamp_ns: if core.limits.timestamp_compute_and_graphics == vk::TRUE { core.limits.timestamp_period } else { 0.0 },
+        timestamp_ns: if core.limits.timestamp_compute_and_graphics == vk::TRUE {
+            core.limits.timestamp_period
+        } else {
+            0.0
+        },
         cache_key: format!("{cache_key}-{:08x}-{:08x}-{:08x}", core.vendor_id, core.device_id, core.driver_version),
     }
 }
@@ -143,7 +165,8 @@ fn features(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32) 
     let core = all.features;
     // SAFETY: as above.
     let extensions = unsafe { instance.enumerate_device_extension_properties(device) }.unwrap_or_default();
-    let push_descriptor = extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(ash::khr::push_descriptor::NAME));
+    let push_descriptor =
+        extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(ash::khr::push_descriptor::NAME));
     let needed = [
         ("multiDrawIndirect", core.multi_draw_indirect),
         ("drawIndirectFirstInstance", core.draw_indirect_first_instance),
@@ -158,7 +181,12 @@ fn features(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32) 
         ("computeFullSubgroups", v13.compute_full_subgroups),
         ("VK_KHR_push_descriptor", u32::from(push_descriptor)),
     ];
-    let missing = needed.iter().filter(|(_, present)| *present == vk::FALSE).map(|(name, _)| (*name).to_owned()).collect();
-    let optional = vec![("pipelineStatisticsQuery", core.pipeline_statistics_query == vk::TRUE, "triangles and overdraw in results")];
+    let missing =
+        needed.iter().filter(|(_, present)| *present == vk::FALSE).map(|(name, _)| (*name).to_owned()).collect();
+    let optional = vec![(
+        "pipelineStatisticsQuery",
+        core.pipeline_statistics_query == vk::TRUE,
+        "triangles and overdraw in results",
+    )];
     (missing, optional)
 }

@@ -28,8 +28,15 @@ pub enum Point {
 }
 
 impl Point {
-    pub(crate) const ALL: [Point; 7] =
-        [Point::Indirect, Point::Vertices, Point::Drawing, Point::Depth, Point::Colour, Point::Compute, Point::Transfer];
+    pub(crate) const ALL: [Point; 7] = [
+        Point::Indirect,
+        Point::Vertices,
+        Point::Drawing,
+        Point::Depth,
+        Point::Colour,
+        Point::Compute,
+        Point::Transfer,
+    ];
 
     pub(crate) fn bit(self) -> u8 {
         1 << self as u8

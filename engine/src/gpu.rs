@@ -31,6 +31,9 @@ pub struct GpuOptions {
 }
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
+///
+/// Frames are recorded and run one at a time: two threads must not be between [`Gpu::frame`] and [`Frame::finish`] at once
+/// (they share one command pool), nor read or write buffers meanwhile.
 #[derive(Clone)]
 pub struct Gpu(pub(crate) Arc<Inner>);
 
@@ -94,7 +97,12 @@ impl Gpu {
 
     /// An engine without a device: frames are recorded and can be read as text, but not run.
     pub fn without_device() -> Self {
-        Gpu(Arc::new(Inner { vulkan: None, next_id: AtomicU32::new(0), names: Mutex::default(), barrier_every_stage: false }))
+        Gpu(Arc::new(Inner {
+            vulkan: None,
+            next_id: AtomicU32::new(0),
+            names: Mutex::default(),
+            barrier_every_stage: false,
+        }))
     }
 
     /// What is known of the device; none without one.
@@ -164,7 +172,12 @@ fn graphics_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Op
     families.iter().position(|family| family.queue_flags.contains(wanted)).map(|index| index as u32)
 }
 
-fn create_device(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32, statistics: bool) -> Result<ash::Device> {
+fn create_device(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    family: u32,
+    statistics: bool,
+) -> Result<ash::Device> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
     let core = vk::PhysicalDeviceFeatures::default()
@@ -172,7 +185,10 @@ fn create_device(instance: &ash::Instance, physical: vk::PhysicalDevice, family:
         .draw_indirect_first_instance(true)
         .fragment_stores_and_atomics(true)
         .pipeline_statistics_query(statistics);
-    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().draw_indirect_count(true).scalar_block_layout(true).host_query_reset(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
+        .draw_indirect_count(true)
+        .scalar_block_layout(true)
+        .host_query_reset(true);
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
         .synchronization2(true)
@@ -202,11 +218,15 @@ impl Vulkan {
     ) -> Result<Self> {
         let push = ash::khr::push_descriptor::Device::new(&instance.raw, &device);
         // SAFETY: the extension is loaded when its function answers; without it labels are left out.
-        let has_labels = unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }.is_some();
+        let has_labels =
+            unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }
+                .is_some();
         let labels = has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device));
         // SAFETY: the family was asked for when the device was made.
         let queue = unsafe { device.get_device_queue(family, 0) };
-        let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(family).flags(vk::CommandPoolCreateFlags::TRANSIENT);
+        let pool_info = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(family)
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT);
         // SAFETY: the device is alive.
         let pool = unsafe { device.create_command_pool(&pool_info, None) }.named("vkCreateCommandPool")?;
         let allocator = Allocator::new(&AllocatorCreateDesc {

@@ -34,12 +34,20 @@ impl Format {
     }
 
     fn aspect(self) -> vk::ImageAspectFlags {
-        if self == Format::Depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+        if self == Format::Depth {
+            vk::ImageAspectFlags::DEPTH
+        } else {
+            vk::ImageAspectFlags::COLOR
+        }
     }
 
     /// Bytes a texel.
     pub fn texel_bytes(self) -> usize {
-        if self == Format::Heat { 2 } else { 4 }
+        if self == Format::Heat {
+            2
+        } else {
+            4
+        }
     }
 
     /// The name of the Vulkan format.
@@ -68,8 +76,15 @@ impl Image {
     /// Makes an image of `size` in pixels. Its contents are undefined until it is cleared or drawn to.
     pub fn new(gpu: &Gpu, name: &str, format: Format, size: [u32; 2]) -> Result<Self> {
         let id = gpu.new_id(name);
-        let mut image =
-            Image { gpu: gpu.clone(), id, raw: vk::Image::null(), view: vk::ImageView::null(), allocation: None, format, size };
+        let mut image = Image {
+            gpu: gpu.clone(),
+            id,
+            raw: vk::Image::null(),
+            view: vk::ImageView::null(),
+            allocation: None,
+            format,
+            size,
+        };
         if let Some(vulkan) = &gpu.0.vulkan {
             check_size(vulkan, name, size)?;
             image.create(vulkan, name)?;
@@ -110,7 +125,12 @@ impl Image {
             .array_layers(1)
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(attachment | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST);
+            .usage(
+                attachment
+                    | vk::ImageUsageFlags::SAMPLED
+                    | vk::ImageUsageFlags::TRANSFER_SRC
+                    | vk::ImageUsageFlags::TRANSFER_DST,
+            );
         // SAFETY: the device is alive and the size was checked. What fails half-way is freed by `Drop` of `self`'s retired
         // parts or, for a bare image, leaks only until the device goes, which follows such an error.
         unsafe {
@@ -134,7 +154,13 @@ impl Image {
     }
 
     fn range(&self) -> vk::ImageSubresourceRange {
-        vk::ImageSubresourceRange { aspect_mask: self.format.aspect(), base_mip_level: 0, level_count: 1, base_array_layer: 0, layer_count: 1 }
+        vk::ImageSubresourceRange {
+            aspect_mask: self.format.aspect(),
+            base_mip_level: 0,
+            level_count: 1,
+            base_array_layer: 0,
+            layer_count: 1,
+        }
     }
 
     fn to_general_layout(&self, vulkan: &Vulkan) -> Result<()> {

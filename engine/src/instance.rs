@@ -23,7 +23,8 @@ impl Instance {
         // SAFETY: loading the system's Vulkan loader runs its initialisers; there is no way around trusting it.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoLoader(error.to_string()))?;
         // SAFETY: a query without preconditions.
-        let layers = unsafe { entry.enumerate_instance_layer_properties() }.named("vkEnumerateInstanceLayerProperties")?;
+        let layers =
+            unsafe { entry.enumerate_instance_layer_properties() }.named("vkEnumerateInstanceLayerProperties")?;
         let has_layer = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION_LAYER));
         if options.validation && !has_layer {
             return Err(Error::NoValidation);
@@ -48,9 +49,13 @@ impl Drop for Instance {
 }
 
 fn create(entry: &ash::Entry, validation: bool) -> Result<ash::Instance> {
-    let application = vk::ApplicationInfo::default().application_name(c"sightline").engine_name(c"sightline").api_version(vk::API_VERSION_1_3);
+    let application = vk::ApplicationInfo::default()
+        .application_name(c"sightline")
+        .engine_name(c"sightline")
+        .api_version(vk::API_VERSION_1_3);
     // SAFETY: a query without preconditions.
-    let available = unsafe { entry.enumerate_instance_extension_properties(None) }.named("vkEnumerateInstanceExtensionProperties")?;
+    let available = unsafe { entry.enumerate_instance_extension_properties(None) }
+        .named("vkEnumerateInstanceExtensionProperties")?;
     let mut extensions = Vec::new();
     // Labels and names are for captures as much as for validation: taken wherever they are to be had.
     let labels = ash::ext::debug_utils::NAME;
@@ -60,8 +65,10 @@ fn create(entry: &ash::Entry, validation: bool) -> Result<ash::Instance> {
     let layers = if validation { vec![VALIDATION_LAYER.as_ptr()] } else { Vec::new() };
     let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
     let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
-    let mut info =
-        vk::InstanceCreateInfo::default().application_info(&application).enabled_extension_names(&extensions).enabled_layer_names(&layers);
+    let mut info = vk::InstanceCreateInfo::default()
+        .application_info(&application)
+        .enabled_extension_names(&extensions)
+        .enabled_layer_names(&layers);
     if validation {
         info = info.push_next(&mut features);
     }
@@ -81,7 +88,8 @@ fn create_messenger(
         .pfn_user_callback(Some(callback))
         .user_data(Arc::as_ptr(messages) as *mut c_void);
     // SAFETY: the user pointer is kept alive by `Instance::messages` until after the messenger is destroyed.
-    let messenger = unsafe { extension.create_debug_utils_messenger(&info, None) }.named("vkCreateDebugUtilsMessengerEXT")?;
+    let messenger =
+        unsafe { extension.create_debug_utils_messenger(&info, None) }.named("vkCreateDebugUtilsMessengerEXT")?;
     Ok((extension, messenger))
 }
 

@@ -43,6 +43,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
             remedy: "use a method option that needs fewer".to_owned(),
         });
     }
+    assert_counts_do_not_lapse(ops);
     let commands = vulkan.begin_commands()?;
     let recording = Recording { vulkan, commands };
     let device = &vulkan.device;
@@ -75,11 +76,28 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
     Ok(Lowered { commands })
 }
 
+/// See [`IndexedIndirect`]: a programming error, caught where it can be seen.
+fn assert_counts_do_not_lapse(ops: &[Recorded]) {
+    let mut counted = false;
+    for recorded in ops {
+        if let Op::Draw { draw, .. } = &recorded.op {
+            assert!(
+                draw.count.is_some() || !counted,
+                "{}: a draw without a count after one with a count",
+                recorded.label
+            );
+            counted |= draw.count.is_some();
+        }
+    }
+}
+
 impl Recording<'_> {
     fn stamp(&self, how: &How, index: u32) {
         let device = &self.vulkan.device;
         // SAFETY: `index` is within the pool: `lower` checked it.
-        unsafe { device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, how.timestamps, index) };
+        unsafe {
+            device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, how.timestamps, index)
+        };
         if how.timer == TimerMode::Split {
             full_barrier(device, self.commands);
         }
@@ -88,7 +106,9 @@ impl Recording<'_> {
     fn label(&self, label: &str) {
         let (Some(labels), Ok(name)) = (&self.vulkan.labels, std::ffi::CString::new(label)) else { return };
         // SAFETY: the name lives through the call; every label is ended by `end_label`.
-        unsafe { labels.cmd_begin_debug_utils_label(self.commands, &vk::DebugUtilsLabelEXT::default().label_name(&name)) };
+        unsafe {
+            labels.cmd_begin_debug_utils_label(self.commands, &vk::DebugUtilsLabelEXT::default().label_name(&name))
+        };
     }
 
     fn end_label(&self) {
@@ -149,7 +169,15 @@ impl Recording<'_> {
 
     fn draw(&self, stage: &BoundStage, draw: &IndexedIndirect, target: &Target) -> Result<()> {
         let colour = target.colour.map(|(_, format)| format);
-        self.bind(stage, Some(DrawState { colour, item: target.item.is_some(), depth_write: !target.depth_read_only, primitives: draw.primitives }))?;
+        self.bind(
+            stage,
+            Some(DrawState {
+                colour,
+                item: target.item.is_some(),
+                depth_write: !target.depth_read_only,
+                primitives: draw.primitives,
+            }),
+        )?;
         let device = &self.vulkan.device;
         let (vertices, vertices_at, _) = range(&draw.vertices);
         let (indices, indices_at, _) = range(&draw.indices);
@@ -170,7 +198,9 @@ impl Recording<'_> {
                         draw.max_draws,
                         stride,
                     ),
-                    None => device.cmd_draw_indexed_indirect(self.commands, commands, commands_at, draw.max_draws, stride),
+                    None => {
+                        device.cmd_draw_indexed_indirect(self.commands, commands, commands_at, draw.max_draws, stride)
+                    }
                 }
             }
         });
@@ -202,9 +232,20 @@ impl Recording<'_> {
         if target.depth_read_only {
             depth = depth.store_op(vk::AttachmentStoreOp::NONE);
         }
-        let info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colours).depth_attachment(&depth);
+        let info = vk::RenderingInfo::default()
+            .render_area(area)
+            .layer_count(1)
+            .color_attachments(&colours)
+            .depth_attachment(&depth);
         let device = &self.vulkan.device;
-        let viewport = [vk::Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, min_depth: 0.0, max_depth: 1.0 }];
+        let viewport = [vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: width as f32,
+            height: height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        }];
         // SAFETY: views are alive and in the general layout; begin and end pair up.
         unsafe {
             device.cmd_begin_rendering(self.commands, &info);
@@ -257,8 +298,9 @@ impl Recording<'_> {
             .iter()
             .enumerate()
             .map(|(index, binding)| {
-                let write =
-                    vk::WriteDescriptorSet::default().dst_binding(binding.binding).descriptor_type(descriptor_type(binding.kind));
+                let write = vk::WriteDescriptorSet::default()
+                    .dst_binding(binding.binding)
+                    .descriptor_type(descriptor_type(binding.kind));
                 match stage.resources[index] {
                     Bound::Buffer { .. } => write.buffer_info(&buffers[index]),
                     Bound::Image(_) => write.image_info(&images[index]),
@@ -314,7 +356,8 @@ pub(crate) fn submit_error(result: vk::Result, stages: String) -> Error {
 pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
     let mut ticks = vec![0u64; ops.len() + 1];
     // SAFETY: the submission is done, and wrote this many timestamps.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }.named("vkGetQueryPoolResults")?;
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
+        .named("vkGetQueryPoolResults")?;
     let ms = f64::from(vulkan.info.timestamp_ns) * 1e-6;
     let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
         label: recorded.label.clone(),
@@ -327,10 +370,10 @@ pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]
 pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statistics> {
     let mut counted = [[0u64; 2]];
     // SAFETY: the submission is done and the query was begun and ended in it.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }.named("vkGetQueryPoolResults")?;
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }
+        .named("vkGetQueryPoolResults")?;
     Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
 }
-
 
 #[cfg(test)]
 mod tests {

@@ -42,7 +42,15 @@ impl<T: Pod> Buffer<T> {
     pub fn new(gpu: &Gpu, name: &str, len: usize, placement: Placement) -> Result<Self> {
         let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
         let id = gpu.new_id(name);
-        let mut buffer = Buffer { gpu: gpu.clone(), id, raw: vk::Buffer::null(), bytes, len, allocation: None, element: PhantomData };
+        let mut buffer = Buffer {
+            gpu: gpu.clone(),
+            id,
+            raw: vk::Buffer::null(),
+            bytes,
+            len,
+            allocation: None,
+            element: PhantomData,
+        };
         if let Some(vulkan) = &gpu.0.vulkan {
             check_range(vulkan, name, bytes, placement)?;
             (buffer.raw, buffer.allocation) = create(vulkan, name, bytes, placement)?;
@@ -160,8 +168,20 @@ fn create(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Resu
 }
 
 impl Vulkan {
-    pub(crate) fn allocate(&self, name: &str, requirements: vk::MemoryRequirements, location: MemoryLocation, linear: bool) -> Result<Allocation> {
-        let description = AllocationCreateDesc { name, requirements, location, linear, allocation_scheme: AllocationScheme::GpuAllocatorManaged };
+    pub(crate) fn allocate(
+        &self,
+        name: &str,
+        requirements: vk::MemoryRequirements,
+        location: MemoryLocation,
+        linear: bool,
+    ) -> Result<Allocation> {
+        let description = AllocationCreateDesc {
+            name,
+            requirements,
+            location,
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
         let allocation = lock(&self.allocator).allocate(&description).map_err(|source| Error::OutOfMemory {
             what: name.to_owned(),
             mib: requirements.size as f64 / (1024.0 * 1024.0),
@@ -175,7 +195,12 @@ impl Vulkan {
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
-            vulkan.retired.push(Retired { buffer: self.raw, image: vk::Image::null(), view: vk::ImageView::null(), allocation });
+            vulkan.retired.push(Retired {
+                buffer: self.raw,
+                image: vk::Image::null(),
+                view: vk::ImageView::null(),
+                allocation,
+            });
             vulkan.bury();
         }
     }

@@ -95,7 +95,8 @@ impl Pipelines {
             .bindings(&bindings)
             .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR);
         // SAFETY: the device is alive; the arrays live through the calls.
-        let set = unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
+        let set =
+            unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
         let sets = [set];
         let ranges = [vk::PushConstantRange { stage_flags: flags, offset: 0, size: info.push_size }];
         let used = if info.push_size > 0 { &ranges[..] } else { &[] };
@@ -111,14 +112,16 @@ impl Pipelines {
         let specialization = constants.info();
         let module = shader(device, &stage.info.modules[0])?;
         // A stage that counts on its subgroup says so by a constant of this name; the size is then required, not hoped for.
-        let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default().required_subgroup_size(self.subgroup_size);
+        let mut required =
+            vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default().required_subgroup_size(self.subgroup_size);
         let mut shader_stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module)
             .name(ENTRY)
             .specialization_info(&specialization);
         if stage.info.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
-            shader_stage = shader_stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut required);
+            shader_stage =
+                shader_stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut required);
         }
         let info = [vk::ComputePipelineCreateInfo::default().stage(shader_stage).layout(layout)];
         // SAFETY: the module fits the layout: both come from one reflection.
@@ -128,7 +131,13 @@ impl Pipelines {
         first(made, "vkCreateComputePipelines")
     }
 
-    fn graphics(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout, state: &DrawState) -> Result<vk::Pipeline> {
+    fn graphics(
+        &self,
+        device: &ash::Device,
+        stage: &BoundStage,
+        layout: vk::PipelineLayout,
+        state: &DrawState,
+    ) -> Result<vk::Pipeline> {
         let constants = Constants::new(stage);
         let specialization = constants.info();
         let mut modules = Vec::new();
@@ -199,8 +208,10 @@ fn draw_pipeline(
         .src_color_blend_factor(vk::BlendFactor::ONE)
         .dst_color_blend_factor(vk::BlendFactor::ONE)
         .color_blend_op(vk::BlendOp::ADD);
-    let (formats, blends): (Vec<_>, Vec<_>) =
-        attachment_formats(state).into_iter().map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace })).unzip();
+    let (formats, blends): (Vec<_>, Vec<_>) = attachment_formats(state)
+        .into_iter()
+        .map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace }))
+        .unzip();
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -228,11 +239,17 @@ fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
     state.colour.into_iter().chain(state.item.then_some(Format::Item)).map(Format::vulkan).collect()
 }
 
-fn vertex_layout(info: &StageInfo) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
+fn vertex_layout(
+    info: &StageInfo,
+) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
     if info.vertex.is_empty() {
         return (Vec::new(), Vec::new());
     }
-    let binding = vk::VertexInputBindingDescription { binding: 0, stride: info.vertex_stride, input_rate: vk::VertexInputRate::VERTEX };
+    let binding = vk::VertexInputBindingDescription {
+        binding: 0,
+        stride: info.vertex_stride,
+        input_rate: vk::VertexInputRate::VERTEX,
+    };
     let attribute = |attribute: &shaders::VertexAttribute| vk::VertexInputAttributeDescription {
         location: attribute.location,
         binding: 0,
@@ -271,13 +288,17 @@ impl Constants {
 }
 
 fn shader(device: &ash::Device, module: &ShaderModule) -> Result<vk::ShaderModule> {
-    let words: Vec<u32> = module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+    let words: Vec<u32> =
+        module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
     let info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
     unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")
 }
 
-fn first(made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>, call: &'static str) -> Result<vk::Pipeline> {
+fn first(
+    made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+    call: &'static str,
+) -> Result<vk::Pipeline> {
     match made {
         Ok(pipelines) => Ok(pipelines[0]),
         Err((_, result)) => Err(Error::Vulkan { call, result }),

@@ -17,7 +17,8 @@ pub(crate) fn file(folder: &Path, info: &AdapterInfo) -> PathBuf {
 
 /// Makes a cache from the file, or an empty one. The driver checks the header; we check that there is one.
 pub(crate) fn load(device: &ash::Device, path: Option<&Path>) -> Result<vk::PipelineCache> {
-    let stored = path.and_then(|path| std::fs::read(path).ok()).filter(|bytes| bytes.len() > HEADER_BYTES).unwrap_or_default();
+    let stored =
+        path.and_then(|path| std::fs::read(path).ok()).filter(|bytes| bytes.len() > HEADER_BYTES).unwrap_or_default();
     let info = vk::PipelineCacheCreateInfo::default().initial_data(&stored);
     // SAFETY: the device is alive; drivers must ignore data that is not theirs.
     match unsafe { device.create_pipeline_cache(&info, None) } {

@@ -18,6 +18,9 @@ pub enum Primitives {
 }
 
 /// A multi-draw whose commands, and their number, lie on the GPU.
+///
+/// Within one submission a draw without a count must not follow one with a count: lavapipe (Mesa 22.3) then takes the old
+/// count, and drops draws without a word. The engine panics on such a frame rather than let it pass for culling.
 #[derive(Clone, Copy, Debug)]
 pub struct IndexedIndirect {
     /// Vertices, as the pipeline's generated vertex struct.
@@ -108,7 +111,11 @@ impl Recorder {
 
     /// The label that a stage recorded now would get.
     pub fn label(&self, stage: &str) -> String {
-        if self.part.is_empty() { stage.to_owned() } else { format!("{stage}:{}", self.part) }
+        if self.part.is_empty() {
+            stage.to_owned()
+        } else {
+            format!("{stage}:{}", self.part)
+        }
     }
 
     /// Adds a step under the stage name given.
@@ -139,7 +146,9 @@ impl Recorder {
 
 fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
     let bindings = |stage: &BoundStage| {
-        let one = |(info, bound): (&shaders::BindingInfo, &Bound)| format!("{}={}({:?})", info.name, name(resource(bound)), info.access);
+        let one = |(info, bound): (&shaders::BindingInfo, &Bound)| {
+            format!("{}={}({:?})", info.name, name(resource(bound)), info.access)
+        };
         stage.info.bindings.iter().zip(&stage.resources).map(one).collect::<Vec<_>>().join(" ")
     };
     match op {
@@ -147,7 +156,12 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         Op::DispatchIndirect { stage, groups } => format!("[groups from {}] {}", name(groups.id), bindings(stage)),
         Op::Draw { stage, draw, .. } => {
             let count = draw.count.map_or(String::new(), |count| format!(" count={}", name(count.id)));
-            format!("[up to {} draws] commands={}{count} {}", draw.max_draws, name(resource(&draw.commands)), bindings(stage))
+            format!(
+                "[up to {} draws] commands={}{count} {}",
+                draw.max_draws,
+                name(resource(&draw.commands)),
+                bindings(stage)
+            )
         }
         Op::Clear { target } => format!("depth={}", name(target.depth.id)),
         Op::Fill { buffer, value } => format!("{}={value}", name(resource(buffer))),
@@ -182,7 +196,9 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
         }
         Op::Clear { target } => attachments(target),
         Op::Fill { buffer, .. } => vec![Use::write(resource(buffer), Point::Transfer)],
-        Op::Copy { from, to } => vec![Use::read(resource(from), Point::Transfer), Use::write(resource(to), Point::Transfer)],
+        Op::Copy { from, to } => {
+            vec![Use::read(resource(from), Point::Transfer), Use::write(resource(to), Point::Transfer)]
+        }
     }
 }
 

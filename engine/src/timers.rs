@@ -45,12 +45,14 @@ impl QueryStore {
         if let Some(queries) = lock(&self.0).pop() {
             return Ok(queries);
         }
-        let timestamps = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(MAX_TIMESTAMPS);
+        let timestamps =
+            vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(MAX_TIMESTAMPS);
         let statistics = vk::QueryPoolCreateInfo::default()
             .query_type(vk::QueryType::PIPELINE_STATISTICS)
             .query_count(1)
             .pipeline_statistics(
-                vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
+                vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES
+                    | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
             );
         // SAFETY: the device is alive; statistics are asked for only where the feature is on.
         unsafe {
@@ -95,7 +97,13 @@ pub(crate) fn self_check(gpu: &Gpu) -> Result<TimerMode> {
     let size = [CHECK_PX; 2];
     let colour = Image::new(gpu, "engine.timer_check.colour", Format::Colour, size)?;
     let depth = Image::new(gpu, "engine.timer_check.depth", Format::Depth, size)?;
-    let target = Target { size, colour: Some((colour.view(), Format::Colour)), item: None, depth: depth.view(), depth_read_only: false };
+    let target = Target {
+        size,
+        colour: Some((colour.view(), Format::Colour)),
+        item: None,
+        depth: depth.view(),
+        depth_read_only: false,
+    };
     let words = Buffer::<u32>::new(gpu, "engine.timer_check.words", 64, Placement::Storage)?;
     let corners = Buffer::with_data(gpu, "engine.timer_check.corners", &[0u32, 1, 2], Placement::Storage)?;
     let command = shaders::types::DrawCommand { index_count: 3, instance_count: 1, ..Default::default() };

@@ -28,7 +28,8 @@ impl<'a> Staging<'a> {
         let requirements = unsafe { vulkan.device.get_buffer_memory_requirements(raw) };
         let allocation = vulkan.allocate("staging", requirements, location, true)?;
         // SAFETY: the memory was allocated for this buffer's requirements.
-        unsafe { vulkan.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }.named("vkBindBufferMemory")?;
+        unsafe { vulkan.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+            .named("vkBindBufferMemory")?;
         staging.allocation = Some(allocation);
         Ok(staging)
     }
@@ -58,7 +59,8 @@ impl Gpu {
         let mut staging = Staging::new(vulkan, bytes.len().min(PIECE_BYTES), MemoryLocation::CpuToGpu)?;
         for (index, piece) in bytes.chunks(PIECE_BYTES).enumerate() {
             staging.bytes()?[..piece.len()].copy_from_slice(piece);
-            let region = vk::BufferCopy { src_offset: 0, dst_offset: (index * PIECE_BYTES) as u64, size: piece.len() as u64 };
+            let region =
+                vk::BufferCopy { src_offset: 0, dst_offset: (index * PIECE_BYTES) as u64, size: piece.len() as u64 };
             let from = staging.raw;
             // SAFETY: both buffers are alive through the wait and the region lies in both.
             vulkan.run_once(|device, commands| unsafe { device.cmd_copy_buffer(commands, from, to, &[region]) })?;
@@ -78,12 +80,19 @@ impl Gpu {
         Ok(staging.bytes()?[..bytes].to_vec())
     }
 
-    pub(crate) fn stage_from_image(&self, from: vk::Image, aspect: vk::ImageAspectFlags, size: [u32; 2], texel_bytes: usize) -> Result<Vec<u8>> {
+    pub(crate) fn stage_from_image(
+        &self,
+        from: vk::Image,
+        aspect: vk::ImageAspectFlags,
+        size: [u32; 2],
+        texel_bytes: usize,
+    ) -> Result<Vec<u8>> {
         let vulkan = self.vulkan()?;
         let bytes = size[0] as usize * size[1] as usize * texel_bytes;
         let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
         let to = staging.raw;
-        let layers = vk::ImageSubresourceLayers { aspect_mask: aspect, mip_level: 0, base_array_layer: 0, layer_count: 1 };
+        let layers =
+            vk::ImageSubresourceLayers { aspect_mask: aspect, mip_level: 0, base_array_layer: 0, layer_count: 1 };
         let extent = vk::Extent3D { width: size[0], height: size[1], depth: 1 };
         let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(extent);
         vulkan.run_once(|device, commands| {
@@ -99,7 +108,8 @@ pub(crate) fn full_barrier(device: &ash::Device, commands: vk::CommandBuffer) {
     let barrier = [vk::MemoryBarrier2::default()
         .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
         .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-        .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        // The host too: mapped buffers are read once the submission's fence is passed.
+        .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
         .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)];
     // SAFETY: the command buffer is recording, outside a rendering.
     unsafe { device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().memory_barriers(&barrier)) };
@@ -120,7 +130,10 @@ impl Vulkan {
 
     pub(crate) fn begin_commands(&self) -> Result<vk::CommandBuffer> {
         let pool = lock(&self.pool);
-        let info = vk::CommandBufferAllocateInfo::default().command_pool(*pool).level(vk::CommandBufferLevel::PRIMARY).command_buffer_count(1);
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(*pool)
+            .level(vk::CommandBufferLevel::PRIMARY)
+            .command_buffer_count(1);
         // SAFETY: the pool is locked and alive.
         let commands = unsafe { self.device.allocate_command_buffers(&info) }.named("vkAllocateCommandBuffers")?[0];
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -140,7 +153,10 @@ impl Vulkan {
             let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
             let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
             let submits = [vk::SubmitInfo2::default().command_buffer_infos(&infos)];
-            let done = self.device.queue_submit2(*queue, &submits, fence).and_then(|()| self.device.wait_for_fences(&[fence], true, u64::MAX));
+            let done = self
+                .device
+                .queue_submit2(*queue, &submits, fence)
+                .and_then(|()| self.device.wait_for_fences(&[fence], true, u64::MAX));
             self.device.destroy_fence(fence, None);
             if done.is_ok() {
                 self.device.free_command_buffers(*pool, &[commands]);

@@ -89,7 +89,8 @@ fn make_truth(session: &mut Session, options: &BenchOptions, progress: Progress<
         return Ok(MadeTruth { run: Some(truth), sets });
     }
     let needs_sets = options.methods.iter().any(|(entry, _)| entry.id == "ref");
-    let sets = if needs_sets { Some(RunTruth::visible_sets(session, options.cache.as_deref(), &mut step)?) } else { None };
+    let sets =
+        if needs_sets { Some(RunTruth::visible_sets(session, options.cache.as_deref(), &mut step)?) } else { None };
     Ok(MadeTruth { run: None, sets })
 }
 
@@ -150,7 +151,8 @@ fn measure(
 
 impl CaptureOrder {
     fn measured(&mut self, session: &mut Session, contender: &mut Contender, truth: &Truth) -> Result<Measured> {
-        let name: String = contender.label().chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).collect();
+        let name: String =
+            contender.label().chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).collect();
         self.library.start(&session.gpu, &self.folder.join(name))?;
         let measured = contender.measured(session, self.frame, truth)?;
         let file = self.library.end(&session.gpu)?;
@@ -253,7 +255,8 @@ fn stages(reports: &[FrameReport]) -> Vec<results::Stage> {
     let total: f64 = ran.values().flatten().sum();
     let row = |name: String| {
         let samples = ran.get(&name).cloned().unwrap_or_default();
-        let (skipped, reason) = skipped.get(&name).map_or((0, None), |(count, reason)| (*count, Some((*reason).to_owned())));
+        let (skipped, reason) =
+            skipped.get(&name).map_or((0, None), |(count, reason)| (*count, Some((*reason).to_owned())));
         let share = if total > 0.0 { samples.iter().sum::<f64>() / total } else { 0.0 };
         results::Stage { name, median_ms: stats::median(&samples).unwrap_or(0.0), share, skipped, reason }
     };
@@ -292,7 +295,8 @@ fn results(session: &Session, options: &BenchOptions, methods: Vec<results::Meth
 
 /// Writes results.json and results.csv to a folder, which is made if it is not there.
 pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
     results.write_json(&folder.join("results.json"))?;
     results.write_csv(&folder.join("results.csv"))?;
     Ok(())

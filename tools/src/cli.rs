@@ -10,7 +10,12 @@ use std::path::PathBuf;
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
 /// stage by stage, against the truth.
 #[derive(Debug, Parser)]
-#[command(name = "sightline", version, max_term_width = 100, after_help = "Start with:\n  sightline bench --scale 0.1\n  sightline bench --scene model.glb --method none,hzb --frames 60\n  sightline shot --method hzb --view overdraw --out overdraw.png")]
+#[command(
+    name = "sightline",
+    version,
+    max_term_width = 100,
+    after_help = "Start with:\n  sightline bench --scale 0.1\n  sightline bench --scene model.glb --method none,hzb --frames 60\n  sightline shot --method hzb --view overdraw --out overdraw.png"
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -230,7 +235,8 @@ impl DeviceArgs {
 }
 
 fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
-    let parts = text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    let parts =
+        text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     match parts {
         Some(size) if !size.contains(&0) => Ok(size),
         _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
@@ -239,7 +245,8 @@ fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
 
 /// Reads `a,b[option=value,…],c` or `all`, and applies `--set`. Each method may come several times with other options.
 pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry, Options)>> {
-    let specs = if list == "all" { METHODS.iter().map(|entry| entry.id.to_owned()).collect() } else { split_methods(list)? };
+    let specs =
+        if list == "all" { METHODS.iter().map(|entry| entry.id.to_owned()).collect() } else { split_methods(list)? };
     let mut chosen = Vec::new();
     for spec in &specs {
         let (name, inside) = match spec.split_once('[') {

@@ -111,8 +111,17 @@ impl Session {
         let hash: String = self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect();
         let [width, height] = self.options.size;
         let device = self.gpu.info().map(|info| info.cache_key.clone()).unwrap_or_default();
-        let shaders: String = shaders::STAGES.iter().filter(|stage| stage.name.starts_with("draw/")).flat_map(|stage| stage.modules).map(|module| format!("{:x}", module.spirv.len())).collect();
-        format!("scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders}", self.path.describe(), self.options.frames)
+        let shaders: String = shaders::STAGES
+            .iter()
+            .filter(|stage| stage.name.starts_with("draw/"))
+            .flat_map(|stage| stage.modules)
+            .map(|module| format!("{:x}", module.spirv.len()))
+            .collect();
+        format!(
+            "scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders}",
+            self.path.describe(),
+            self.options.frames
+        )
     }
 }
 

@@ -80,7 +80,11 @@ fn count_from_half(bits: u16) -> u32 {
         return 0;
     }
     let significand = 1024 + fraction;
-    if exponent >= 25 { significand << (exponent - 25) } else { significand >> (25 - exponent) }
+    if exponent >= 25 {
+        significand << (exponent - 25)
+    } else {
+        significand >> (25 - exponent)
+    }
 }
 
 #[cfg(test)]
@@ -89,7 +93,9 @@ mod tests {
 
     #[test]
     fn half_floats_count_exactly() {
-        for (bits, count) in [(0x0000, 0), (0x3c00, 1), (0x4000, 2), (0x4200, 3), (0x4900, 10), (0x63ff, 1023), (0x6800, 2048)] {
+        for (bits, count) in
+            [(0x0000, 0), (0x3c00, 1), (0x4000, 2), (0x4200, 3), (0x4900, 10), (0x63ff, 1023), (0x6800, 2048)]
+        {
             assert_eq!(count_from_half(bits), count, "{bits:#x}");
         }
     }

@@ -19,6 +19,7 @@ const NEAR_FACES: [u32; 18] = [0, 2, 6, 0, 6, 4, 0, 1, 5, 0, 5, 4, 0, 1, 3, 0, 3
 pub struct BoxList {
     listed: Buffer<u32>,
     command: Buffer<DrawCommand>,
+    one_draw: Buffer<u32>,
     corners: Buffer<u32>,
     view: Buffer<BoxView>,
     counts: Buffer<u32>,
@@ -36,6 +37,7 @@ impl BoxList {
         Ok(BoxList {
             listed: Buffer::new(gpu, &format!("{name}.listed"), len, storage)?,
             command: Buffer::with_data(gpu, &format!("{name}.command"), &[command], storage)?,
+            one_draw: Buffer::with_data(gpu, "boxes.one_draw", &[1], storage)?,
             corners: Buffer::with_data(gpu, "boxes.corners", &NEAR_FACES, Placement::Geometry)?,
             view: Buffer::new(gpu, &format!("{name}.view"), 1, Placement::Upload)?,
             counts: Buffer::new(gpu, &format!("{name}.counts"), chunks, storage)?,
@@ -101,7 +103,8 @@ impl BoxList {
             vertices: self.corners.all().into(),
             indices: self.corners.all().into(),
             commands: self.command.all().into(),
-            count: None,
+            // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).
+            count: Some(self.one_draw.all()),
             max_draws: 1,
             primitives: Primitives::Triangles,
         }
@@ -122,12 +125,7 @@ pub fn box_view(view: &View) -> BoxView {
     let eye = eye_of(&matrix);
     let (origin, direction) = if eye.w != 0.0 { pinhole_rays(&matrix, eye) } else { parallel_rays(&matrix, eye) };
     let floats = |vectors: [DVec3; 3]| vectors.map(|vector| vector.as_vec3().to_array());
-    BoxView {
-        view: view.cull(),
-        eye: eye.as_vec4().to_array(),
-        origin: floats(origin),
-        direction: floats(direction),
-    }
+    BoxView { view: view.cull(), eye: eye.as_vec4().to_array(), origin: floats(origin), direction: floats(direction) }
 }
 
 fn eye_of(matrix: &DMat4) -> glam::DVec4 {

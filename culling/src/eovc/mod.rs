@@ -19,7 +19,12 @@ use shaders::{eovc, Stage};
 /// How the hierarchy is split, and which groups are opened before they are rasterised.
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
-    OptionInfo { name: "bvh", default: "sah", values: "sah|middle|equal", help: "how the hierarchy is split (thesis, table 4)" },
+    OptionInfo {
+        name: "bvh",
+        default: "sah",
+        values: "sah|middle|equal",
+        help: "how the hierarchy is split (thesis, table 4)",
+    },
     OptionInfo {
         name: "coherent",
         default: "true",
@@ -28,11 +33,15 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "pixels",
-        default: "4096",
+        default: "64",
         values: "1..=4294967295",
         help: "pixels that a group may cover of which nothing is known yet; larger ones are opened",
     },
 ];
+
+/// Frames of an unchanged view after which the lists hold: what is hidden leaves the early list one frame after it is drawn,
+/// and what it had let through may leave in the next two.
+const SETTLED_AFTER: u32 = 4;
 
 struct Eovc {
     tree: Tree,
@@ -89,7 +98,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         frame: 2,
         counting: false,
         now: 0,
-        still: Still::new(setup.options),
+        still: Still::new(setup.options).settled_after(SETTLED_AFTER),
         tree,
     }))
 }

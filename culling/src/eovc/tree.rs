@@ -29,7 +29,11 @@ impl Tree {
         let without_leaf = bvh.leaf_of_object().iter().enumerate().filter(|(_, leaf)| **leaf == NO_NODE);
         without_leaf.for_each(|(object, _)| unbounded[object] = 1);
         // Bounds that f32 cannot hold are in the f64 tree, but the GPU keeps them by their flag: so does this list.
-        flags.iter().enumerate().filter(|(_, flags)| **flags & OBJECT_ALWAYS_KEPT != 0).for_each(|(object, _)| unbounded[object] = 1);
+        flags
+            .iter()
+            .enumerate()
+            .filter(|(_, flags)| **flags & OBJECT_ALWAYS_KEPT != 0)
+            .for_each(|(object, _)| unbounded[object] = 1);
         let nodes = flatten(&bvh, &flags);
         Ok(Tree {
             nodes: Buffer::with_data(gpu, "eovc.nodes", &nodes, Placement::Storage)?,
@@ -92,8 +96,10 @@ impl Tree {
 }
 
 fn build(world: &World, options: BvhOptions) -> Result<Bvh> {
-    Bvh::build_with(world.host_bounds(), options)
-        .map_err(|error| Error::Missing { method: "eovc", needs: format!("bounds it can build a hierarchy over: {error}") })
+    Bvh::build_with(world.host_bounds(), options).map_err(|error| Error::Missing {
+        method: "eovc",
+        needs: format!("bounds it can build a hierarchy over: {error}"),
+    })
 }
 
 /// The nodes as the GPU takes them, rounded outward. A node is as wide in the raster as the widest object below.

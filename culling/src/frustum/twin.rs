@@ -75,7 +75,8 @@ pub fn test_bounds(bounds: &[Bounds], view: &CullView) -> Vec<u32> {
 /// plane value in the box, divided by what such values consist of. Below 0 the box is outside some plane. The GPU keeps
 /// the box from -[`KEPT_BAND`] up and culls it below -[`ROUNDING_BAND`]; between them its own rounding decides.
 pub fn oracle_margin(bounds: &Bounds, view: &CullView) -> f64 {
-    let vec = |high: [f32; 3], low: [f32; 3]| glam::DVec3::from(high.map(f64::from)) + glam::DVec3::from(low.map(f64::from));
+    let vec =
+        |high: [f32; 3], low: [f32; 3]| glam::DVec3::from(high.map(f64::from)) + glam::DVec3::from(low.map(f64::from));
     let centre = vec(bounds.centre_high, bounds.centre_low) - vec(view.camera_high, view.camera_low);
     let half = glam::DVec3::from(bounds.half_extent.map(f64::from));
     let clip = view.clip_from_relative.map(|column| glam::DVec4::from(column.map(f64::from)));
@@ -83,7 +84,8 @@ pub fn oracle_margin(bounds: &Bounds, view: &CullView) -> f64 {
     let margin = |plane: Vec4| {
         let plane = plane.as_dvec4();
         let along = [plane.dot(clip[0]), plane.dot(clip[1]), plane.dot(clip[2])];
-        let value: f64 = plane.dot(clip[3]) + (0..3).map(|axis| along[axis] * centre[axis] + along[axis].abs() * half[axis]).sum::<f64>();
+        let value: f64 = plane.dot(clip[3])
+            + (0..3).map(|axis| along[axis] * centre[axis] + along[axis].abs() * half[axis]).sum::<f64>();
         let reach = centre.abs() + half;
         let size: f64 = plane.abs().dot(clip[3].abs())
             + (0..3).map(|axis| plane.abs().dot(clip[axis].abs()) * reach[axis]).sum::<f64>();

@@ -3,7 +3,8 @@
 use crate::frustum::twin::{clip_from_bounds, farthest_along, footprint_widening, outside_frustum, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
-    Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS, ROUNDING,
+    Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS,
+    ROUNDING,
 };
 
 /// The farthest (smallest) of the source's texels under each texel of the next level.
@@ -118,7 +119,8 @@ impl PyramidTest<'_> {
     pub fn hides(&self, footprint: &Footprint) -> bool {
         let mut level = 1;
         let wide = |level: u32| {
-            (0..2).any(|axis| (footprint.last[axis] >> level) - (footprint.first[axis] >> level) >= self.footprint_texels)
+            (0..2)
+                .any(|axis| (footprint.last[axis] >> level) - (footprint.first[axis] >> level) >= self.footprint_texels)
         };
         while level < self.coarsest_level && wide(level) {
             level += 1;

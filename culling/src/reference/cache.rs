@@ -28,7 +28,8 @@ pub fn load(folder: &Path, key: &str, objects: usize, frames: usize) -> Option<V
     if &magic != MAGIC || stored != [objects as u64, frames as u64] {
         return None;
     }
-    let words = body.chunks_exact(8).map(|word| word.try_into().map(u64::from_le_bytes)).collect::<Result<_, _>>().ok()?;
+    let words =
+        body.chunks_exact(8).map(|word| word.try_into().map(u64::from_le_bytes)).collect::<Result<_, _>>().ok()?;
     VisibleSets::from_words(objects, frames, words)
 }
 
@@ -49,7 +50,8 @@ pub fn save(folder: &Path, key: &str, sets: &VisibleSets) -> io::Result<()> {
     let beside = path.with_extension(format!("{}.tmp", std::process::id()));
     std::fs::create_dir_all(folder)?;
     let mut out = std::fs::File::create(&beside)?;
-    let written = out.write_all(&body).and_then(|()| out.write_all(&digest)).and_then(|()| std::fs::rename(&beside, &path));
+    let written =
+        out.write_all(&body).and_then(|()| out.write_all(&digest)).and_then(|()| std::fs::rename(&beside, &path));
     if written.is_err() {
         let _ = std::fs::remove_file(&beside);
     }

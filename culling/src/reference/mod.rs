@@ -45,7 +45,11 @@ impl Method for Reference {
     fn prepare(&mut self, world: &World, view: &View) -> Result<()> {
         assert_eq!(self.world, world.id(), "this list was made for another world: make the method again");
         let Some(visible) = self.visible.frame(view.frame) else {
-            let needs = format!("the visible set of frame {}, but the run's sets have {} frames", view.frame, self.visible.len());
+            let needs = format!(
+                "the visible set of frame {}, but the run's sets have {} frames",
+                view.frame,
+                self.visible.len()
+            );
             return Err(Error::Missing { method: "ref", needs });
         };
         let mut commands = vec![DrawCommand::default(); world.len()];

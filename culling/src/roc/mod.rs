@@ -13,6 +13,10 @@ use shaders::{roc, Stage};
 /// `skip`: leave out what cannot change the result.
 pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION];
 
+/// Frames of an unchanged view after which the lists hold: what is hidden leaves the early list one frame after it is drawn,
+/// and what it had let through may leave in the next two.
+const SETTLED_AFTER: u32 = 4;
+
 struct Roc {
     visible: [Buffer<u32>; 2],
     newly: Buffer<u32>,
@@ -36,7 +40,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         early: DrawList::new(gpu, "roc.early", world)?,
         late: DrawList::new(gpu, "roc.late", world)?,
         now: 0,
-        still: Still::new(setup.options),
+        still: Still::new(setup.options).settled_after(SETTLED_AFTER),
     }))
 }
 

@@ -37,7 +37,8 @@ impl Still {
     /// True if this frame sees exactly what the last ones saw, and their lists have settled. Call once a frame.
     pub fn holds(&mut self, world: &World, view: &View) -> bool {
         let now = Some((*view, world.revision()));
-        let same = self.last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| last.0.same(&now.0) && last.1 == now.1);
+        let same =
+            self.last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| last.0.same(&now.0) && last.1 == now.1);
         self.last = now;
         self.unchanged = if same { self.unchanged.saturating_add(1) } else { 0 };
         self.enabled && self.unchanged >= self.settled_after

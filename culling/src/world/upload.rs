@@ -5,9 +5,7 @@ use engine::Primitives;
 use glam::{DAffine3, DVec3, Vec3};
 use scenes::{Aabb, Mesh, Scene, Topology, WorldBounds};
 use shaders::draw::ObjectsVertex;
-use shaders::types::{
-    Bounds, DrawCommand, MeshRange, Object, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC, OBJECT_WIDE_RASTER,
-};
+use shaders::types::{Bounds, DrawCommand, MeshRange, Object, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC, OBJECT_WIDE_RASTER};
 
 /// A scene as the GPU takes it.
 pub(super) struct Flat {
@@ -50,8 +48,21 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
             first_instance: index as u32,
         });
     }
-    let ranges = ranges(scene_object.iter().map(|object| scene.meshes[scene.objects[*object as usize].mesh as usize].topology));
-    Flat { vertices, indices, meshes, objects, bounds, boxes, object_meshes, commands, ranges, scene_object, world_bounds }
+    let ranges =
+        ranges(scene_object.iter().map(|object| scene.meshes[scene.objects[*object as usize].mesh as usize].topology));
+    Flat {
+        vertices,
+        indices,
+        meshes,
+        objects,
+        bounds,
+        boxes,
+        object_meshes,
+        commands,
+        ranges,
+        scene_object,
+        world_bounds,
+    }
 }
 
 fn geometry(meshes: &[Mesh]) -> (Vec<ObjectsVertex>, Vec<u32>, Vec<MeshRange>) {
@@ -134,7 +145,11 @@ pub fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
 fn round_up(value: DVec3) -> Vec3 {
     let one = |value: f64| {
         let rounded = value as f32;
-        if f64::from(rounded) < value { rounded.next_up() } else { rounded }
+        if f64::from(rounded) < value {
+            rounded.next_up()
+        } else {
+            rounded
+        }
     };
     Vec3::new(one(value.x), one(value.y), one(value.z))
 }
@@ -165,7 +180,10 @@ mod tests {
             let centre = f64::from(gpu.centre_high[axis]) + f64::from(gpu.centre_low[axis]);
             let half = f64::from(gpu.half_extent[axis]);
             assert!(centre - half <= box_.min[axis] && centre + half >= box_.max[axis], "axis {axis}");
-            assert!(half < (box_.max[axis] - box_.min[axis]) * 0.5 + 1e-6, "axis {axis} is not padded beyond need: {half}");
+            assert!(
+                half < (box_.max[axis] - box_.min[axis]) * 0.5 + 1e-6,
+                "axis {axis} is not padded beyond need: {half}"
+            );
         }
     }
 

@@ -41,7 +41,11 @@ impl View {
     /// As drawing stages take it.
     pub fn gpu(&self) -> types::View {
         let (camera_high, camera_low) = split(self.pose.position);
-        types::View { clip_from_relative: self.clip_from_relative.as_mat4().to_cols_array_2d(), camera_high, camera_low }
+        types::View {
+            clip_from_relative: self.clip_from_relative.as_mat4().to_cols_array_2d(),
+            camera_high,
+            camera_low,
+        }
     }
 
     /// As bounds tests take it.

@@ -19,7 +19,14 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
     let Some(info) = gpu.info() else { return Ok(()) };
     let rows = [
         ("chosen", info.to_string()),
-        ("timers", format!("{} ({})", gpu.timer_mode(), if arguments.timer.is_some() { "by --timer" } else { "by self-check" })),
+        (
+            "timers",
+            format!(
+                "{} ({})",
+                gpu.timer_mode(),
+                if arguments.timer.is_some() { "by --timer" } else { "by self-check" }
+            ),
+        ),
         ("timestamp", format!("{} ns a tick", info.timestamp_ns)),
         ("subgroup", format!("{} lanes", info.subgroup_size)),
         ("largest image", format!("{0} x {0} pixels", info.max_image_px)),

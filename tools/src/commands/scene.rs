@@ -45,7 +45,10 @@ fn show(choice: &SceneChoice) -> Result<()> {
     say(&format!("triangles  {}", scene.triangles()))?;
     say(&format!("bounds     {:.3} to {:.3} m", bounds.min, bounds.max))?;
     let cameras: Vec<_> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
-    say(&format!("cameras    {}", if cameras.is_empty() { "none: made from the bounds".to_owned() } else { cameras.join(", ") }))?;
+    say(&format!(
+        "cameras    {}",
+        if cameras.is_empty() { "none: made from the bounds".to_owned() } else { cameras.join(", ") }
+    ))?;
     say(&format!("paths      {} (chosen: {})", CameraPath::names(&scene).join(", "), path.name()))
 }
 
@@ -53,5 +56,10 @@ fn export(choice: &SceneChoice, out: &Path) -> Result<()> {
     let (scene, path) = open(choice)?;
     let bytes = scenes::export_glb(&scene, Some(&path), choice.frames as usize)?;
     write_atomically(out, |file| file.write_all(&bytes))?;
-    say(&format!("{}: {} objects, {:.1} MiB", out.display(), scene.objects.len(), bytes.len() as f64 / (1024.0 * 1024.0)))
+    say(&format!(
+        "{}: {} objects, {:.1} MiB",
+        out.display(),
+        scene.objects.len(),
+        bytes.len() as f64 / (1024.0 * 1024.0)
+    ))
 }
