@@ -8,8 +8,7 @@ use crate::contract::*;
 /// A node that is not visible below one that is (or the root, if nothing is) is an occludee group. Groups
 /// outside the view volume are dropped (EOVC thesis III.3, figures 4 and 5). Some groups are opened, that is, their children
 /// stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as hit); and, if
-/// COHERENT, those that a pixel of the last frame saw into, as rays would be cast there again, and large ones of which nothing
-/// is known. Single objects go to a list of their own, as they need no ray. The lists' order does not show: they are drawn
+/// COHERENT, those that a pixel of the last frame saw into, as rays would be cast there again, and large ones. Single objects go to a list of their own, as they need no ray. The lists' order does not show: they are drawn
 /// without colour or depth. Twin: culling/src/eovc/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtractGroups {

@@ -34,8 +34,8 @@ pub const OPTIONS: &[OptionInfo] = &[
     OptionInfo {
         name: "pixels",
         default: "64",
-        values: "1..=4294967295",
-        help: "pixels that a group may cover of which nothing is known yet; larger ones are opened",
+        values: "1..=67108864",
+        help: "pixels that a group may cover of which nothing is known (16 times more if it was hidden); larger ones are opened",
     },
 ];
 

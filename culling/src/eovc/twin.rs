@@ -7,6 +7,9 @@ use crate::hzb::twin::footprint_of;
 use scenes::bvh::{Bvh, NO_NODE};
 use shaders::types::{CullView, TreeNode};
 
+/// Twin of the constant in `eovc/extract_groups`.
+const TRUST_IN_HIDDEN: u32 = 16;
+
 /// 1 for each node on a way from an effective occluder to the root. Twin of `eovc/mark_paths`.
 pub fn mark_paths(bvh: &Bvh, occluders: &[u32]) -> Vec<u32> {
     let mut marked = vec![0; bvh.nodes().len()];
@@ -58,8 +61,8 @@ pub fn extract_groups(
             let footprint = footprint_of(&clip, view, flags);
             let pixels = |axis: usize| footprint.last[axis] - footprint.first[axis] + 1;
             let last_frame = known.frame - 1;
-            known.touched[index as usize] == last_frame
-                || (known.tested[index as usize] != last_frame && pixels(0) * pixels(1) > known.most_pixels)
+            let trust = if known.tested[index as usize] == last_frame { TRUST_IN_HIDDEN } else { 1 };
+            known.touched[index as usize] == last_frame || pixels(0) * pixels(1) > known.most_pixels * trust
         };
         match (reaches_near, node.is_leaf != 0) {
             (true, true) => hits.push(node.first_child),

@@ -1,8 +1,7 @@
 // eovc/extract_groups: a node that is not visible below one that is (or the root, if nothing is) is an occludee group. Groups
 // outside the view volume are dropped (EOVC thesis III.3, figures 4 and 5). Some groups are opened, that is, their children
 // stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as hit); and, if
-// COHERENT, those that a pixel of the last frame saw into, as rays would be cast there again, and large ones of which nothing
-// is known. Single objects go to a list of their own, as they need no ray. The lists' order does not show: they are drawn
+// COHERENT, those that a pixel of the last frame saw into, as rays would be cast there again, and large ones. Single objects go to a list of their own, as they need no ray. The lists' order does not show: they are drawn
 // without colour or depth. Twin: culling/src/eovc/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -41,18 +40,22 @@ uint next_after(uint node, uint root) {
     return TREE_NONE;
 }
 
-bool is_too_large(Bounds bounds, ClipBox box) {
+// How many times more pixels a group may cover that the last frame found hidden: it is likely to be so again.
+const uint TRUST_IN_HIDDEN = 16u;
+
+bool covers_more_than(uint most_pixels, Bounds bounds, ClipBox box) {
     Footprint footprint = footprint_of(box, push.view, bounds.flags);
     uvec2 pixels = footprint.last - footprint.first + 1u;
-    return pixels.x * pixels.y > push.most_pixels;
+    return pixels.x * pixels.y > most_pixels;
 }
 
-// Whether the last frame tells us to look at the children instead.
+// Whether the last frame tells us to look at the children instead: rays would be cast for each open pixel.
 bool should_open(uint node, Bounds bounds, ClipBox box) {
     if (!COHERENT) return false;
     uint last_frame = push.frame - 1u;
     if (touched.items[node] == last_frame) return true;
-    return tested.items[node] != last_frame && is_too_large(bounds, box);
+    bool hidden_before = tested.items[node] == last_frame;
+    return covers_more_than(hidden_before ? push.most_pixels * TRUST_IN_HIDDEN : push.most_pixels, bounds, box);
 }
 
 void main() {
