@@ -3,6 +3,7 @@
 use crate::{eovc, frustum, hzb, none, reference, roc, Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
 
 /// A method that can be chosen.
+#[derive(Debug)]
 pub struct Entry {
     /// Its name on the command line and in results.
     pub id: &'static str,

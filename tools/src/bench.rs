@@ -224,7 +224,6 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
         overdraw: records.overdraw.clone(),
         queries: records.counted(|work| work.queries),
         rays: records.counted(|work| work.rays),
-        ..Frames::default()
     }
 }
 

@@ -33,7 +33,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "pixels",
-        default: "64",
+        default: "16",
         values: "1..=67108864",
         help: "pixels that a group may cover of which nothing is known (16 times more if it was hidden); larger ones are opened",
     },
