@@ -2,6 +2,7 @@
 
 use crate::gpu::{Gpu, Vulkan};
 use crate::image::Target;
+use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
 use crate::timers::{Queries, TimerMode};
@@ -198,8 +199,7 @@ impl Frame {
         self.report.frame_ms = started.elapsed().as_secs_f64() * 1e3;
         self.host_since = Instant::now();
         self.report.submissions += 1;
-        let named = || ops.iter().map(|op| op.label.as_str()).collect::<Vec<_>>().join(", ");
-        done.map_err(|result| lower::submit_error(result, named()))?;
+        done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
         self.report.stages.extend(lower::stage_times(vulkan, queries.timestamps, ops)?);
         if let Some(pool) = how.statistics {
             let counted = lower::statistics(vulkan, pool)?;

@@ -11,6 +11,7 @@ mod frame;
 mod gpu;
 mod image;
 mod instance;
+mod lost;
 mod lower;
 mod memory;
 mod messages;

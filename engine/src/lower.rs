@@ -344,14 +344,6 @@ fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
     }
 }
 
-/// Turns a failed submission into an error that names its stages.
-pub(crate) fn submit_error(result: vk::Result, stages: String) -> Error {
-    match result {
-        vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { stage: stages },
-        result => Error::Vulkan { call: "vkQueueSubmit2", result },
-    }
-}
-
 /// Reads the timestamps of a finished submission.
 pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
     let mut ticks = vec![0u64; ops.len() + 1];
