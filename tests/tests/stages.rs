@@ -2,5 +2,7 @@
 
 #[path = "stages/pack.rs"]
 mod pack;
+#[path = "stages/trees.rs"]
+mod trees;
 #[path = "stages/world.rs"]
 mod world;

@@ -79,6 +79,11 @@ impl Tree {
         self.nodes.all()
     }
 
+    /// Nodes as they are on the GPU now; for tests.
+    pub fn read_nodes(&self) -> Result<Vec<TreeNode>> {
+        Ok(self.nodes.read()?)
+    }
+
     /// The leaf of each object; `TREE_NONE` for those set aside.
     pub fn leaves(&self) -> BufferRef<u32> {
         self.leaves.all()
