@@ -186,7 +186,7 @@ fn features(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32) 
     let optional = vec![(
         "pipelineStatisticsQuery",
         core.pipeline_statistics_query == vk::TRUE,
-        "triangles and overdraw in results",
+        "primitive and fragment counts of a frame (not used by bench)",
     )];
     (missing, optional)
 }
