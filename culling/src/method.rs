@@ -33,6 +33,8 @@ pub struct Work {
     pub rays: u64,
     /// Nodes that rays looked at.
     pub node_visits: u64,
+    /// Rays not cast because all that they could meet had been met.
+    pub early_stops: u64,
 }
 
 /// What a method is made from.
@@ -52,6 +54,11 @@ pub trait Method {
     /// Readies what belongs to the run and not to the method (`ref`'s visible set). Never timed.
     fn prepare(&mut self, _world: &World, _view: &View) -> Result<()> {
         Ok(())
+    }
+
+    /// True if the method's own frames need the item buffer, timed ones too.
+    fn needs_items(&self) -> bool {
+        false
     }
 
     /// Records one frame that clears the target and draws what may be visible. Every decision comes from the world, the view

@@ -210,10 +210,17 @@ impl Frame {
         Ok(())
     }
 
-    /// Runs what was recorded, waits, and reads a buffer: a read-back in the middle of a frame.
+    /// Runs what was recorded, waits, and reads a buffer: a read-back in the middle of a frame. What that takes beyond the
+    /// stages themselves is a row of its own, `frame/read_back`, so that the stall shows.
     pub fn read<T: Pod>(&mut self, buffer: &Buffer<T>) -> Result<Vec<T>> {
+        let (first, since) = (self.report.stages.len(), Instant::now());
         self.submit_and_wait()?;
-        buffer.read()
+        let data = buffer.read()?;
+        let stages: f64 = self.report.stages[first..].iter().map(|stage| stage.ms).sum();
+        let stall = (since.elapsed().as_secs_f64() * 1e3 - stages).max(0.0);
+        self.report.stages.push(StageTime { label: self.recorder.label("frame/read_back"), ms: stall });
+        self.host_since = Instant::now();
+        Ok(data)
     }
 
     /// Runs what is left and reports what the frame did. A message of the validation layer is an error.

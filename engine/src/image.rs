@@ -215,9 +215,16 @@ pub struct Target {
     pub depth: ImageRef,
     /// Depth is only tested, and may be read as a texture at the same time.
     pub depth_read_only: bool,
+    /// A fragment must be nearer than what is there. Otherwise one as near passes too, so that the last one drawn stays.
+    pub strictly_nearer: bool,
 }
 
 impl Target {
+    /// The same images, on which what was drawn before keeps its pixels against what is as near.
+    pub fn keeping_ties(&self) -> Target {
+        Target { strictly_nearer: true, ..*self }
+    }
+
     /// The same depth, tested and not written, and nothing else: what visibility tests draw to.
     pub fn test_only(&self) -> Target {
         Target { colour: None, item: None, depth_read_only: true, ..*self }

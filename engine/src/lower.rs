@@ -175,6 +175,7 @@ impl Recording<'_> {
                 colour,
                 item: target.item.is_some(),
                 depth_write: !target.depth_read_only,
+                strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
             }),
         )?;

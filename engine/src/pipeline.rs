@@ -28,6 +28,7 @@ pub(crate) struct DrawState {
     pub(crate) colour: Option<Format>,
     pub(crate) item: bool,
     pub(crate) depth_write: bool,
+    pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
 }
 
@@ -201,7 +202,7 @@ fn draw_pipeline(
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
         .depth_write_enable(state.depth_write)
-        .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
+        .depth_compare_op(if state.strictly_nearer { vk::CompareOp::GREATER } else { vk::CompareOp::GREATER_OR_EQUAL });
     let replace = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
     let add = replace
         .blend_enable(true)

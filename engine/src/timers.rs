@@ -140,6 +140,7 @@ impl Check {
                 item: None,
                 depth: depth.view(),
                 depth_read_only: false,
+                strictly_nearer: false,
             },
             _images: [colour, depth],
             words: Buffer::new(gpu, "engine.timer_check.words", CHECK_WORDS as usize, Placement::Storage)?,

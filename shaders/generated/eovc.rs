@@ -5,209 +5,18 @@
 use super::types;
 use crate::contract::*;
 
-/// A node that is not visible below one that is (or the root, if nothing is) is an occludee group. Groups
-/// outside the view volume are dropped (EOVC thesis III.3, figures 4 and 5). Some groups are opened, that is, their children
-/// stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as hit); and, if
-/// COHERENT, those that a pixel of the last frame saw into, as rays would be cast there again, and large ones. Single objects go to a list of their own, as they need no ray. The lists' order does not show: they are drawn
-/// without colour or depth. Twin: culling/src/eovc/twin.rs.
-#[derive(Clone, Copy, Debug)]
-pub struct ExtractGroups {
-    /// `nodes` in GLSL.
-    pub nodes: BufferRef<types::TreeNode>,
-    /// `marked` in GLSL.
-    pub marked: BufferRef<u32>,
-    /// `groups` in GLSL.
-    pub groups: BufferRef<u32>,
-    /// `group_command` in GLSL.
-    pub group_command: BufferRef<types::DrawCommand>,
-    /// `singles` in GLSL.
-    pub singles: BufferRef<u32>,
-    /// `single_command` in GLSL.
-    pub single_command: BufferRef<types::DrawCommand>,
-    /// `hits` in GLSL.
-    pub hits: BufferRef<u32>,
-    /// `tested` in GLSL.
-    pub tested: BufferRef<u32>,
-    /// `touched` in GLSL.
-    pub touched: BufferRef<u32>,
-    /// `view` in GLSL.
-    pub view: types::CullView,
-    /// `node_count` in GLSL.
-    pub node_count: u32,
-    /// `frame` in GLSL.
-    pub frame: u32,
-    /// `most_pixels` in GLSL.
-    pub most_pixels: u32,
-    /// Specialization constants.
-    pub constants: ExtractGroupsConstants,
-}
-
-impl Stage for ExtractGroups {
-    const INFO: &'static StageInfo = &StageInfo {
-        name: "eovc/extract_groups",
-        modules: &[ShaderModule {
-            kind: ShaderKind::Compute,
-            spirv: include_bytes!("spirv/eovc/extract_groups.comp.spv"),
-        }],
-        bindings: &[
-            BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "marked", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "groups", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
-            BindingInfo {
-                name: "group_command",
-                binding: 3,
-                kind: BindingKind::StorageBuffer,
-                access: Access::ReadWrite,
-            },
-            BindingInfo { name: "singles", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
-            BindingInfo {
-                name: "single_command",
-                binding: 5,
-                kind: BindingKind::StorageBuffer,
-                access: Access::ReadWrite,
-            },
-            BindingInfo { name: "hits", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
-            BindingInfo { name: "tested", binding: 7, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
-            BindingInfo { name: "touched", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Read },
-        ],
-        push_size: 112,
-        constants: &[ConstantInfo { name: "COHERENT", id: 0 }],
-        local_size: [64, 1, 1],
-        vertex: &[],
-        vertex_stride: 0,
-        outputs: &[],
-    };
-
-    fn bind(&self) -> BoundStage {
-        let push = ExtractGroupsPush {
-            view: self.view,
-            node_count: self.node_count,
-            frame: self.frame,
-            most_pixels: self.most_pixels,
-        };
-        BoundStage::new(
-            Self::INFO,
-            vec![
-                self.nodes.into(),
-                self.marked.into(),
-                self.groups.into(),
-                self.group_command.into(),
-                self.singles.into(),
-                self.single_command.into(),
-                self.hits.into(),
-                self.tested.into(),
-                self.touched.into(),
-            ],
-            bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.coherent)],
-        )
-    }
-}
-
-impl ComputeStage for ExtractGroups {}
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ExtractGroupsPush {
-    view: types::CullView,
-    node_count: u32,
-    frame: u32,
-    most_pixels: u32,
-}
-
-const _: () = {
-    assert!(std::mem::offset_of!(ExtractGroupsPush, view) == 0);
-    assert!(std::mem::offset_of!(ExtractGroupsPush, node_count) == 100);
-    assert!(std::mem::offset_of!(ExtractGroupsPush, frame) == 104);
-    assert!(std::mem::offset_of!(ExtractGroupsPush, most_pixels) == 108);
-    assert!(size_of::<ExtractGroupsPush>() == 112);
-};
-
-/// Specialization constants of [`ExtractGroups`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtractGroupsConstants {
-    /// Open groups by what the last frame saw; false is the thesis.
-    pub coherent: bool,
-}
-
-impl Default for ExtractGroupsConstants {
-    /// The values that GLSL gives.
-    fn default() -> Self {
-        Self { coherent: true }
-    }
-}
-
-/// From each effective occluder up to the root, every node on the way is visible; a node that another occluder
-/// has marked ends the climb (EOVC thesis III.3, figure 3). Right under concurrency: whoever exchanges first goes on.
-/// Twin: culling/src/eovc/twin.rs.
-#[derive(Clone, Copy, Debug)]
-pub struct MarkPaths {
-    /// `occluders` in GLSL.
-    pub occluders: BufferRef<u32>,
-    /// `leaves` in GLSL.
-    pub leaves: BufferRef<u32>,
-    /// `nodes` in GLSL.
-    pub nodes: BufferRef<types::TreeNode>,
-    /// `marked` in GLSL.
-    pub marked: BufferRef<u32>,
-    /// `object_count` in GLSL.
-    pub object_count: u32,
-}
-
-impl Stage for MarkPaths {
-    const INFO: &'static StageInfo = &StageInfo {
-        name: "eovc/mark_paths",
-        modules: &[ShaderModule { kind: ShaderKind::Compute, spirv: include_bytes!("spirv/eovc/mark_paths.comp.spv") }],
-        bindings: &[
-            BindingInfo { name: "occluders", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "leaves", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "nodes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "marked", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
-        ],
-        push_size: 4,
-        constants: &[],
-        local_size: [64, 1, 1],
-        vertex: &[],
-        vertex_stride: 0,
-        outputs: &[],
-    };
-
-    fn bind(&self) -> BoundStage {
-        let push = MarkPathsPush { object_count: self.object_count };
-        BoundStage::new(
-            Self::INFO,
-            vec![self.occluders.into(), self.leaves.into(), self.nodes.into(), self.marked.into()],
-            bytemuck::bytes_of(&push),
-            vec![],
-        )
-    }
-}
-
-impl ComputeStage for MarkPaths {}
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct MarkPathsPush {
-    object_count: u32,
-}
-
-const _: () = {
-    assert!(std::mem::offset_of!(MarkPathsPush, object_count) == 0);
-    assert!(size_of::<MarkPathsPush>() == 4);
-};
-
-/// The boxes of occludee groups against the depth of the effective occluders; where one is open, a ray is
-/// cast into the group (EOVC thesis III.4, figures 6 to 8). No colour, no depth is written.
+/// The boxes of those groups that are open, once more (EOVC thesis III.4, figure 7). No colour, no depth is
+/// written.
 ///
 /// From an open pixel of a group's box a ray goes through the group's part of the hierarchy and flags every
 /// leaf it meets before the depth buffer does. A node below which all is hit stops later rays (EOVC thesis III.4, figure 8).
-/// The group and the nodes that a ray meets are touched: the next frame opens them instead of casting rays there again.
+/// The nodes that a ray meets are touched: the next frame opens them instead of casting rays there again.
 #[derive(Clone, Copy, Debug)]
-pub struct QueryGroups {
+pub struct CastRays {
     /// `nodes` in GLSL.
     pub nodes: BufferRef<types::TreeNode>,
-    /// `groups` in GLSL.
-    pub groups: BufferRef<u32>,
+    /// `open_groups` in GLSL.
+    pub open_groups: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::BoxView>,
     /// `full` in GLSL.
@@ -223,19 +32,19 @@ pub struct QueryGroups {
     /// `frame` in GLSL.
     pub frame: u32,
     /// Specialization constants.
-    pub constants: QueryGroupsConstants,
+    pub constants: CastRaysConstants,
 }
 
-impl Stage for QueryGroups {
+impl Stage for CastRays {
     const INFO: &'static StageInfo = &StageInfo {
-        name: "eovc/query_groups",
+        name: "eovc/cast_rays",
         modules: &[
-            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/eovc/query_groups.vert.spv") },
-            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/eovc/query_groups.frag.spv") },
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/eovc/cast_rays.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/eovc/cast_rays.frag.spv") },
         ],
         bindings: &[
             BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "groups", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "open_groups", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "full", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
             BindingInfo { name: "hits", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
@@ -252,12 +61,12 @@ impl Stage for QueryGroups {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = QueryGroupsPush { frame: self.frame };
+        let push = CastRaysPush { frame: self.frame };
         BoundStage::new(
             Self::INFO,
             vec![
                 self.nodes.into(),
-                self.groups.into(),
+                self.open_groups.into(),
                 self.views.into(),
                 self.full.into(),
                 self.hits.into(),
@@ -267,6 +76,427 @@ impl Stage for QueryGroups {
             ],
             bytemuck::bytes_of(&push),
             vec![u32::from(self.constants.count)],
+        )
+    }
+}
+
+impl GraphicsStage for CastRays {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CastRaysPush {
+    frame: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(CastRaysPush, frame) == 0);
+    assert!(size_of::<CastRaysPush>() == 4);
+};
+
+/// Specialization constants of [`CastRays`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CastRaysConstants {
+    /// Count rays, node visits and rays stopped early: for tables, never in timed frames.
+    pub count: bool,
+}
+
+impl Default for CastRaysConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { count: false }
+    }
+}
+
+/// Groups outside the view volume are dropped (EOVC thesis III.3, figure 5). Some groups are opened, that is,
+/// their children stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as
+/// hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
+/// be cast there again. Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
+/// rays would meet all there is: every object in the view volume is hit. The lists' order does not show: they are drawn without
+/// colour or depth. A pass goes down CULL_LEVELS levels and lists what it leaves open for the next, so that no invocation walks
+/// far. Twin: culling/src/eovc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct CullGroups {
+    /// `nodes` in GLSL.
+    pub nodes: BufferRef<types::TreeNode>,
+    /// `starts` in GLSL.
+    pub starts: BufferRef<u32>,
+    /// `unfinished` in GLSL.
+    pub unfinished: BufferRef<u32>,
+    /// `grids` in GLSL.
+    pub grids: BufferRef<u32>,
+    /// `groups` in GLSL.
+    pub groups: BufferRef<u32>,
+    /// `group_command` in GLSL.
+    pub group_command: BufferRef<types::DrawCommand>,
+    /// `singles` in GLSL.
+    pub singles: BufferRef<u32>,
+    /// `single_command` in GLSL.
+    pub single_command: BufferRef<types::DrawCommand>,
+    /// `hits` in GLSL.
+    pub hits: BufferRef<u32>,
+    /// `touched` in GLSL.
+    pub touched: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `frame` in GLSL.
+    pub frame: u32,
+    /// `list` in GLSL.
+    pub list: u32,
+    /// Specialization constants.
+    pub constants: CullGroupsConstants,
+}
+
+impl Stage for CullGroups {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "eovc/cull_groups",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/eovc/cull_groups.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "starts", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "unfinished", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "grids", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "groups", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo {
+                name: "group_command",
+                binding: 5,
+                kind: BindingKind::StorageBuffer,
+                access: Access::ReadWrite,
+            },
+            BindingInfo { name: "singles", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo {
+                name: "single_command",
+                binding: 7,
+                kind: BindingKind::StorageBuffer,
+                access: Access::ReadWrite,
+            },
+            BindingInfo { name: "hits", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "touched", binding: 9, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 108,
+        constants: &[ConstantInfo { name: "COHERENT", id: 0 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = CullGroupsPush { view: self.view, frame: self.frame, list: self.list };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.nodes.into(),
+                self.starts.into(),
+                self.unfinished.into(),
+                self.grids.into(),
+                self.groups.into(),
+                self.group_command.into(),
+                self.singles.into(),
+                self.single_command.into(),
+                self.hits.into(),
+                self.touched.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.coherent)],
+        )
+    }
+}
+
+impl ComputeStage for CullGroups {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CullGroupsPush {
+    view: types::CullView,
+    frame: u32,
+    list: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(CullGroupsPush, view) == 0);
+    assert!(std::mem::offset_of!(CullGroupsPush, frame) == 100);
+    assert!(std::mem::offset_of!(CullGroupsPush, list) == 104);
+    assert!(size_of::<CullGroupsPush>() == 108);
+};
+
+/// Specialization constants of [`CullGroups`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CullGroupsConstants {
+    /// Open groups by what the last frame saw; false is the thesis.
+    pub coherent: bool,
+}
+
+impl Default for CullGroupsConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { coherent: true }
+    }
+}
+
+/// A node that is not visible below one that is, or the root if nothing is, is an occludee group (EOVC
+/// thesis III.3, figures 3 and 4). One invocation a visible node, which looks at its children. Twin: culling/src/eovc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct ExtractGroups {
+    /// `nodes` in GLSL.
+    pub nodes: BufferRef<types::TreeNode>,
+    /// `marked` in GLSL.
+    pub marked: BufferRef<u32>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `groups` in GLSL.
+    pub groups: BufferRef<u32>,
+    /// `grids` in GLSL.
+    pub grids: BufferRef<u32>,
+    /// `frame` in GLSL.
+    pub frame: u32,
+}
+
+impl Stage for ExtractGroups {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "eovc/extract_groups",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/eovc/extract_groups.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "marked", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "groups", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "grids", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 4,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ExtractGroupsPush { frame: self.frame };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.nodes.into(), self.marked.into(), self.visible.into(), self.groups.into(), self.grids.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for ExtractGroups {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ExtractGroupsPush {
+    frame: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ExtractGroupsPush, frame) == 0);
+    assert!(size_of::<ExtractGroupsPush>() == 4);
+};
+
+/// Whoever owns a pixel of the item buffer is an occluder of the next frame (EOVC thesis III.6.2, figures
+/// 12 and 13). Drawing in any order flags hidden objects too; this does not. One invocation a strip of FILTER_STRIP pixels: what
+/// it has just flagged it need not flag again. Twin: culling/src/eovc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct FilterOccluders {
+    /// `owners` in GLSL.
+    pub owners: ImageRef,
+    /// `occluders` in GLSL.
+    pub occluders: BufferRef<u32>,
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
+    /// `strips` in GLSL.
+    pub strips: u32,
+}
+
+impl Stage for FilterOccluders {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "eovc/filter_occluders",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/eovc/filter_occluders.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "owners", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "occluders", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 12,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = FilterOccludersPush { size_px: self.size_px, strips: self.strips };
+        BoundStage::new(Self::INFO, vec![self.owners.into(), self.occluders.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for FilterOccluders {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct FilterOccludersPush {
+    size_px: [u32; 2],
+    strips: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(FilterOccludersPush, size_px) == 0);
+    assert!(std::mem::offset_of!(FilterOccludersPush, strips) == 8);
+    assert!(size_of::<FilterOccludersPush>() == 12);
+};
+
+/// From each effective occluder up to the root, every node on the way is visible; a node that another occluder
+/// has marked ends the climb (EOVC thesis III.3, figure 3). Right under concurrency: whoever exchanges first goes on. A mark is
+/// the frame's number, so that nothing need be cleared. Marked nodes are listed for the next stage, in no order.
+/// Twin: culling/src/eovc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct MarkPaths {
+    /// `occluders` in GLSL.
+    pub occluders: BufferRef<u32>,
+    /// `leaves` in GLSL.
+    pub leaves: BufferRef<u32>,
+    /// `nodes` in GLSL.
+    pub nodes: BufferRef<types::TreeNode>,
+    /// `marked` in GLSL.
+    pub marked: BufferRef<u32>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `grids` in GLSL.
+    pub grids: BufferRef<u32>,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+    /// `frame` in GLSL.
+    pub frame: u32,
+}
+
+impl Stage for MarkPaths {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "eovc/mark_paths",
+        modules: &[ShaderModule { kind: ShaderKind::Compute, spirv: include_bytes!("spirv/eovc/mark_paths.comp.spv") }],
+        bindings: &[
+            BindingInfo { name: "occluders", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "leaves", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "nodes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "marked", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "visible", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "grids", binding: 5, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 8,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MarkPathsPush { object_count: self.object_count, frame: self.frame };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.occluders.into(),
+                self.leaves.into(),
+                self.nodes.into(),
+                self.marked.into(),
+                self.visible.into(),
+                self.grids.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for MarkPaths {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MarkPathsPush {
+    object_count: u32,
+    frame: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MarkPathsPush, object_count) == 0);
+    assert!(std::mem::offset_of!(MarkPathsPush, frame) == 4);
+    assert!(size_of::<MarkPathsPush>() == 8);
+};
+
+/// The boxes of occludee groups against the depth of the effective occluders (EOVC thesis III.4, figures 6
+/// and 7). No colour, no depth is written.
+///
+/// A fragment of the box is open, so the group may show: the next stage casts rays into it. The group and
+/// what lies above it are touched, and the next frame opens them.
+#[derive(Clone, Copy, Debug)]
+pub struct QueryGroups {
+    /// `nodes` in GLSL.
+    pub nodes: BufferRef<types::TreeNode>,
+    /// `groups` in GLSL.
+    pub groups: BufferRef<u32>,
+    /// `views` in GLSL.
+    pub views: BufferRef<types::BoxView>,
+    /// `touched` in GLSL.
+    pub touched: BufferRef<u32>,
+    /// `open_groups` in GLSL.
+    pub open_groups: BufferRef<u32>,
+    /// `open_command` in GLSL.
+    pub open_command: BufferRef<types::DrawCommand>,
+    /// `frame` in GLSL.
+    pub frame: u32,
+}
+
+impl Stage for QueryGroups {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "eovc/query_groups",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/eovc/query_groups.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/eovc/query_groups.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "groups", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "views", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "touched", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "open_groups", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo {
+                name: "open_command",
+                binding: 5,
+                kind: BindingKind::StorageBuffer,
+                access: Access::ReadWrite,
+            },
+        ],
+        push_size: 4,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = QueryGroupsPush { frame: self.frame };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.nodes.into(),
+                self.groups.into(),
+                self.views.into(),
+                self.touched.into(),
+                self.open_groups.into(),
+                self.open_command.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![],
         )
     }
 }
@@ -283,20 +513,6 @@ const _: () = {
     assert!(std::mem::offset_of!(QueryGroupsPush, frame) == 0);
     assert!(size_of::<QueryGroupsPush>() == 4);
 };
-
-/// Specialization constants of [`QueryGroups`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QueryGroupsConstants {
-    /// Count rays and node visits: for tables, never in timed frames.
-    pub count: bool,
-}
-
-impl Default for QueryGroupsConstants {
-    /// The values that GLSL gives.
-    fn default() -> Self {
-        Self { count: false }
-    }
-}
 
 /// What the rays hit and has not been drawn yet is drawn now (EOVC thesis III.5).
 /// Twin: culling/src/eovc/twin.rs.
@@ -388,7 +604,7 @@ impl Stage for TestSingles {
             BindingInfo { name: "singles", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "hits", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
-            BindingInfo { name: "touched", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "touched", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
         push_size: 4,
         constants: &[],
@@ -420,58 +636,4 @@ struct TestSinglesPush {
 const _: () = {
     assert!(std::mem::offset_of!(TestSinglesPush, frame) == 0);
     assert!(size_of::<TestSinglesPush>() == 4);
-};
-
-/// What lies above an open node is open. Each node that a pixel of this frame saw into marks the way to the
-/// root, as far as nobody has, so that the next frame opens groups down to it. Twin: culling/src/eovc/twin.rs.
-#[derive(Clone, Copy, Debug)]
-pub struct TouchPaths {
-    /// `nodes` in GLSL.
-    pub nodes: BufferRef<types::TreeNode>,
-    /// `touched` in GLSL.
-    pub touched: BufferRef<u32>,
-    /// `node_count` in GLSL.
-    pub node_count: u32,
-    /// `frame` in GLSL.
-    pub frame: u32,
-}
-
-impl Stage for TouchPaths {
-    const INFO: &'static StageInfo = &StageInfo {
-        name: "eovc/touch_paths",
-        modules: &[ShaderModule {
-            kind: ShaderKind::Compute,
-            spirv: include_bytes!("spirv/eovc/touch_paths.comp.spv"),
-        }],
-        bindings: &[
-            BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "touched", binding: 1, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
-        ],
-        push_size: 8,
-        constants: &[],
-        local_size: [64, 1, 1],
-        vertex: &[],
-        vertex_stride: 0,
-        outputs: &[],
-    };
-
-    fn bind(&self) -> BoundStage {
-        let push = TouchPathsPush { node_count: self.node_count, frame: self.frame };
-        BoundStage::new(Self::INFO, vec![self.nodes.into(), self.touched.into()], bytemuck::bytes_of(&push), vec![])
-    }
-}
-
-impl ComputeStage for TouchPaths {}
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct TouchPathsPush {
-    node_count: u32,
-    frame: u32,
-}
-
-const _: () = {
-    assert!(std::mem::offset_of!(TouchPathsPush, node_count) == 0);
-    assert!(std::mem::offset_of!(TouchPathsPush, frame) == 4);
-    assert!(size_of::<TouchPathsPush>() == 8);
 };

@@ -273,3 +273,78 @@ const _: () = {
     assert!(std::mem::offset_of!(WriteIndicesPush, object_count) == 0);
     assert!(size_of::<WriteIndicesPush>() == 4);
 };
+
+/// A command for every object, which draws nothing if the object's flag is 0 (EOVC thesis III.6.1: what
+/// packing is compared with). The end of the last command that draws something is what a counter read-back passes on.
+/// Twin: culling/src/pack/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct WriteInstances {
+    /// `flags` in GLSL.
+    pub flags: BufferRef<u32>,
+    /// `object_meshes` in GLSL.
+    pub object_meshes: BufferRef<u32>,
+    /// `meshes` in GLSL.
+    pub meshes: BufferRef<types::MeshRange>,
+    /// `commands` in GLSL.
+    pub commands: BufferRef<types::DrawCommand>,
+    /// `end` in GLSL.
+    pub end: BufferRef<u32>,
+    /// `first_object` in GLSL.
+    pub first_object: u32,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+}
+
+impl Stage for WriteInstances {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "pack/write_instances",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/pack/write_instances.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "flags", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "object_meshes", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "meshes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "commands", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "end", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 8,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = WriteInstancesPush { first_object: self.first_object, object_count: self.object_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.flags.into(),
+                self.object_meshes.into(),
+                self.meshes.into(),
+                self.commands.into(),
+                self.end.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for WriteInstances {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct WriteInstancesPush {
+    first_object: u32,
+    object_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(WriteInstancesPush, first_object) == 0);
+    assert!(std::mem::offset_of!(WriteInstancesPush, object_count) == 4);
+    assert!(size_of::<WriteInstancesPush>() == 8);
+};

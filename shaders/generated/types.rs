@@ -17,6 +17,12 @@ pub const DEPTH_SLACK_PER_PIXEL: f32 = 8.0;
 /// `ROUNDING` in GLSL.
 pub const ROUNDING: f32 = 2.3841858e-7;
 
+/// Work groups of every stage that walks a list.
+pub const LIST_LOCAL_SIZE: u32 = 64;
+
+/// `MOST_GROUPS` in GLSL.
+pub const MOST_GROUPS: u32 = 65535;
+
 /// Levels that one reduction writes: an 8x8 tile of its source becomes 4x4, 2x2 and 1 texels.
 pub const REDUCED_LEVELS: u32 = 3;
 
@@ -35,11 +41,30 @@ pub const OBJECT_ALWAYS_KEPT: u32 = 4;
 /// How many visibility flags one invocation of the packing stages walks.
 pub const PACK_CHUNK: u32 = 64;
 
+/// Pixels of a row that one invocation of eovc/filter_occluders looks at.
+pub const FILTER_STRIP: u32 = 16;
+
 /// No object: the item buffer where nothing was drawn.
 pub const ITEM_NONE: u32 = 0xffffffff;
 
 /// `TREE_NONE` in GLSL.
 pub const TREE_NONE: u32 = 0xffffffff;
+
+/// Groups of more objects are opened, so that a ray meets few enough nodes: lavapipe ends the loops of an invocation at
+/// 65,535 iterations without a word. A ray looks at 2 x this nodes at most, climbs as often, and notes hits as often.
+pub const RAY_OBJECTS: u32 = 4096;
+
+/// Levels of the hierarchy that one pass of eovc/cull_groups goes down: 31 nodes an invocation at most.
+pub const CULL_LEVELS: u32 = 4;
+
+/// Words of a pass's grid: work groups in x, y and z, then how many nodes are listed.
+pub const GRID_WORDS: u32 = 4;
+
+/// EOVC's lists by number: marked nodes, then what the passes of eovc/cull_groups start from.
+pub const MARKED_LIST: u32 = 0;
+
+/// `FIRST_CULL_LIST` in GLSL.
+pub const FIRST_CULL_LIST: u32 = 1;
 
 /// World bounds of an object: a box rounded outward on the host by the error of transforming its vertices on the GPU.
 #[repr(C)]

@@ -20,6 +20,7 @@ fn recorded(id: &str, case: &worlds::Case, frames: usize, mut look: impl FnMut(u
         item: None,
         depth: depth.view(),
         depth_read_only: false,
+        strictly_nearer: false,
     };
     let entry = culling::find(id).unwrap();
     let mut sets = VisibleSets::new(world.len());

@@ -30,6 +30,7 @@ impl Targets {
             item: None,
             depth: self.depth.view(),
             depth_read_only: false,
+            strictly_nearer: false,
         }
     }
 

@@ -25,6 +25,8 @@ pub struct BoxList {
     counts: Buffer<u32>,
     starts: Buffer<u32>,
     total: Buffer<u32>,
+    /// Drawn by an exact command, without a count on the GPU.
+    without_count: bool,
     subgroup_size: u32,
 }
 
@@ -43,6 +45,7 @@ impl BoxList {
             counts: Buffer::new(gpu, &format!("{name}.counts"), chunks, storage)?,
             starts: Buffer::new(gpu, &format!("{name}.starts"), chunks, storage)?,
             total: Buffer::new(gpu, &format!("{name}.total"), 1, storage)?,
+            without_count: false,
             subgroup_size: gpu.subgroup_size(),
         })
     }
@@ -97,6 +100,17 @@ impl BoxList {
         self.view.all()
     }
 
+    /// A list for frames that read counters back: its draw has no count on the GPU, as draws with and without one must not be
+    /// mixed (see [`IndexedIndirect`]).
+    pub fn without_count(self) -> Self {
+        BoxList { without_count: true, ..self }
+    }
+
+    /// Waits for the frame so far and reads how many boxes there are: counter read-back (EOVC thesis III.6.1).
+    pub fn read_back(&self, f: &mut Frame) -> Result<u32> {
+        Ok(f.read(&self.command)?.first().map_or(0, |command| command.instance_count))
+    }
+
     /// The instanced draw of all boxes.
     pub fn draw(&self) -> IndexedIndirect {
         IndexedIndirect {
@@ -104,7 +118,7 @@ impl BoxList {
             indices: self.corners.all().into(),
             commands: self.command.all().into(),
             // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).
-            count: Some(self.one_draw.all()),
+            count: if self.without_count { None } else { Some(self.one_draw.all()) },
             max_draws: 1,
             primitives: Primitives::Triangles,
         }

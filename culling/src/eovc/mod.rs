@@ -2,42 +2,22 @@
 //! drawn first; the hierarchy's nodes beside what still shows are occludee groups; their boxes are rasterised, and where one is
 //! open a ray finds which objects in it may show.
 
+mod groups;
+mod options;
 mod tree;
 pub mod twin;
 
+pub use options::OPTIONS;
 pub use tree::Tree;
 
 use crate::boxes::BoxList;
 use crate::pack::DrawList;
-use crate::world::Still;
-use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
+use crate::world::{LastToFirst, Still};
+use crate::{Error, Method, Result, Setup, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
-use scenes::bvh::Split;
-use shaders::types::DrawCommand;
+use groups::Groups;
+use shaders::types::{DrawCommand, FILTER_STRIP};
 use shaders::{eovc, Stage};
-
-/// How the hierarchy is split, and which groups are opened before they are rasterised.
-pub const OPTIONS: &[OptionInfo] = &[
-    crate::world::SKIP_OPTION,
-    OptionInfo {
-        name: "bvh",
-        default: "sah",
-        values: "sah|middle|equal",
-        help: "how the hierarchy is split (thesis, table 4)",
-    },
-    OptionInfo {
-        name: "coherent",
-        default: "true",
-        values: "true|false",
-        help: "open groups that the last frame saw into, instead of casting rays there again; false is the thesis",
-    },
-    OptionInfo {
-        name: "pixels",
-        default: "16",
-        values: "1..=67108864",
-        help: "pixels that a group may cover of which nothing is known (16 times more if it was hidden); larger ones are opened",
-    },
-];
 
 /// Frames of an unchanged view after which the lists hold: what is hidden leaves the early list one frame after it is drawn,
 /// and what it had let through may leave in the next two.
@@ -45,22 +25,22 @@ const SETTLED_AFTER: u32 = 4;
 
 struct Eovc {
     tree: Tree,
+    groups: Groups,
+    /// Objects that an earlier frame saw, and those that this one sees: potential and next occluders.
     visible: [Buffer<u32>; 2],
-    marked: Buffer<u32>,
     full: Buffer<u32>,
     hits: Buffer<u32>,
     unbounded: Buffer<u32>,
     newly: Buffer<u32>,
     counters: Buffer<u32>,
-    no_groups: Buffer<DrawCommand>,
-    groups: BoxList,
-    singles: BoxList,
+    open_groups: Buffer<u32>,
+    open_boxes: BoxList,
+    no_boxes: Buffer<DrawCommand>,
     early: DrawList,
     late: DrawList,
-    tested: Buffer<u32>,
-    touched: Buffer<u32>,
-    coherent: bool,
-    most_pixels: u32,
+    /// There if occluders are filtered.
+    order: Option<LastToFirst>,
+    read_back: bool,
     frame: u32,
     counting: bool,
     now: usize,
@@ -69,41 +49,44 @@ struct Eovc {
 
 /// Makes the method.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
-    let (gpu, world) = (setup.gpu, setup.world);
-    let split = match setup.options.text("bvh") {
-        "middle" => Split::Middle,
-        "equal" => Split::EqualCount,
-        _ => Split::Sah,
-    };
-    let tree = Tree::new(gpu, world, split)?;
+    let (gpu, world, options) = (setup.gpu, setup.world, setup.options);
+    let tree = Tree::new(gpu, world, options::split(options))?;
     let objects = |name: &str| Buffer::new(gpu, name, world.len(), Placement::Storage);
     let nodes = |name: &str| Buffer::new(gpu, name, tree.len(), Placement::Storage);
     Ok(Box::new(Eovc {
+        groups: Groups::new(setup, &tree)?,
         visible: [objects("eovc.visible_even")?, objects("eovc.visible_odd")?],
-        marked: nodes("eovc.marked")?,
         full: nodes("eovc.full")?,
         hits: objects("eovc.hits")?,
         unbounded: Buffer::with_data(gpu, "eovc.unbounded", tree.unbounded(), Placement::Storage)?,
         newly: objects("eovc.newly")?,
-        counters: Buffer::new(gpu, "eovc.counters", 2, Placement::Storage)?,
-        no_groups: BoxList::empty_command(gpu)?,
-        groups: BoxList::new(gpu, "eovc.groups", tree.len())?,
-        singles: BoxList::new(gpu, "eovc.singles", world.len())?,
-        early: DrawList::new(gpu, "eovc.early", world)?,
-        late: DrawList::new(gpu, "eovc.late", world)?,
-        tested: nodes("eovc.tested")?,
-        touched: nodes("eovc.touched")?,
-        coherent: setup.options.flag("coherent"),
-        most_pixels: setup.options.number("pixels"),
+        counters: Buffer::new(gpu, "eovc.counters", 3, Placement::Storage)?,
+        open_groups: nodes("eovc.open_groups")?,
+        open_boxes: box_list(setup, "eovc.open_boxes", 0)?,
+        no_boxes: BoxList::empty_command(gpu)?,
+        early: DrawList::styled(gpu, "eovc.early", world, options::commands(options))?,
+        late: DrawList::styled(gpu, "eovc.late", world, options::commands(options))?,
+        order: if options.flag("of") { Some(LastToFirst::new(gpu, world)?) } else { None },
+        read_back: options.flag("cr"),
         frame: 2,
         counting: false,
         now: 0,
-        still: Still::new(setup.options).settled_after(SETTLED_AFTER),
+        still: Still::new(options).settled_after(SETTLED_AFTER),
         tree,
     }))
 }
 
+/// Box draws of frames that read counters back have no count on the GPU, as their other draws have none.
+fn box_list(setup: &Setup<'_>, name: &str, len: usize) -> Result<BoxList> {
+    let list = BoxList::new(setup.gpu, name, len)?;
+    Ok(if setup.options.flag("cr") { list.without_count() } else { list })
+}
+
 impl Method for Eovc {
+    fn needs_items(&self) -> bool {
+        self.filters()
+    }
+
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         world.update(f);
         f.clear(target);
@@ -111,16 +94,14 @@ impl Method for Eovc {
             return self.same_again(f, world, view, target);
         }
         self.tree.follow(world)?;
-        self.groups.look(view)?;
-        self.singles.look(view)?;
+        self.groups.groups.look(view)?;
         self.now = 1 - self.now;
         self.frame += 1;
-        self.map_occluders(f, world, view, target); // 1. occlusion mapping
+        self.map_occluders(f, world, view, target)?; // 1. occlusion mapping
         self.extract_groups(f, world, view); // 2. occludee group extraction
-        self.query_groups(f, target); // 3. batch occlusion query
-        self.render_occludees(f, world, view, target); // 4. occludee rendering
-        f.part("");
-        Ok(()) // 5. what was flagged in 1 and 4 are the next frame's occluders
+        self.query_groups(f, target)?; // 3. batch occlusion query
+        self.render_occludees(f, world, view, target)?; // 4. occludee rendering
+        self.choose_occluders(f, target) // 5. the next frame's occluders
     }
 
     fn count_work(&mut self, on: bool) {
@@ -129,104 +110,125 @@ impl Method for Eovc {
 
     fn work(&self) -> Result<Work> {
         let counted = self.counters.read()?;
-        let boxes = u64::from(self.groups.read_len()?) + u64::from(self.singles.read_len()?);
-        Ok(Work { boxes, rays: counted[0].into(), node_visits: counted[1].into(), queries: 0 })
+        let boxes = u64::from(self.groups.groups.read_len()?) + u64::from(self.groups.singles.read_len()?);
+        let [rays, node_visits, early_stops] = [0, 1, 2].map(|counter| u64::from(counted[counter]));
+        Ok(Work { boxes, rays, node_visits, early_stops, queries: 0 })
     }
 
     fn forget(&mut self) -> Result<()> {
         self.still.forget();
-        self.frame += 1; // what was tested and touched before is older than the last frame
+        self.frame += 1; // what was seen before is older than the last frame
         self.visible.iter_mut().try_for_each(|flags| Ok(flags.write(&vec![0; flags.len()])?))
     }
 }
 
 impl Eovc {
-    /// Draws what the last frame saw, and flags what still shows: the effective occluders (III.2).
-    fn map_occluders(&self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+    fn filters(&self) -> bool {
+        self.order.is_some()
+    }
+
+    /// Draws what the last frame saw: the potential occluders. Those of which a fragment passes the early tests are effective
+    /// (III.2). With occluder filtering all are taken for effective: each owned a pixel a frame ago.
+    fn map_occluders(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         f.part("mapping");
-        let (potential, effective) = (&self.visible[1 - self.now], &self.visible[self.now]);
-        f.fill("eovc/clear_flags", effective, 0);
-        self.early.pack(f, world, potential.all());
-        world.draw_flagged(f, &self.early, effective.all(), view, target);
+        let (potential, seen) = (self.visible[1 - self.now].all(), self.visible[self.now].all());
+        f.fill("eovc/clear_flags", &self.visible[self.now], 0);
+        self.early.pack(f, world, potential);
+        if self.read_back {
+            self.early.read_back(f)?;
+        }
+        if self.filters() {
+            world.draw(f, &self.early, view, target);
+        } else {
+            world.draw_flagged(f, &self.early, seen, view, target);
+        }
+        Ok(())
     }
 
     /// Climbs from each effective occluder to the root; what lies beside the way is a group (III.3).
     fn extract_groups(&self, f: &mut Frame, world: &World, view: &View) {
         f.part("groups");
-        f.fill("eovc/clear_marks", &self.marked, 0);
-        f.fill("eovc/clear_full", &self.full, 0);
         f.copy("eovc/clear_hits", self.unbounded.all(), self.hits.all());
-        self.groups.clear(f, "eovc/clear_groups", &self.no_groups);
-        self.singles.clear(f, "eovc/clear_groups", &self.no_groups);
         if self.tree.is_empty() {
+            f.skip(eovc::ExtractGroups::INFO.name, NO_OBJECTS);
             return;
         }
-        let object_count = world.len() as u32;
-        let mark = eovc::MarkPaths {
-            occluders: self.visible[self.now].all(),
-            leaves: self.tree.leaves(),
-            nodes: self.tree.nodes(),
-            marked: self.marked.all(),
-            object_count,
-        };
-        f.dispatch(mark, object_count);
-        let extract = eovc::ExtractGroups {
-            nodes: self.tree.nodes(),
-            marked: self.marked.all(),
-            groups: self.groups.listed(),
-            group_command: self.groups.command(),
-            singles: self.singles.listed(),
-            single_command: self.singles.command(),
-            hits: self.hits.all(),
-            view: view.cull(),
-            node_count: self.tree.len() as u32,
-            tested: self.tested.all(),
-            touched: self.touched.all(),
-            frame: self.frame,
-            most_pixels: self.most_pixels,
-            constants: eovc::ExtractGroupsConstants { coherent: self.coherent },
-        };
-        f.dispatch(extract, self.tree.len() as u32);
+        let effective = if self.filters() { &self.visible[1 - self.now] } else { &self.visible[self.now] };
+        self.groups.extract(f, world, &self.tree, effective.all(), self.hits.all(), view, self.frame);
     }
 
     /// Rasterises the groups' boxes against the occluders' depth; a ray from each open pixel flags what it meets (III.4).
-    fn query_groups(&self, f: &mut Frame, target: &Target) {
+    fn query_groups(&self, f: &mut Frame, target: &Target) -> Result<()> {
         f.part("query");
         if self.counting {
             f.fill("eovc/clear_counters", &self.counters, 0);
         }
+        if self.tree.is_empty() {
+            f.skip(eovc::QueryGroups::INFO.name, NO_OBJECTS);
+            return Ok(());
+        }
+        let [groups, singles] = [&self.groups.groups, &self.groups.singles];
+        // Without a read-back only the GPU knows, and draws no instance.
+        let [groups, singles] = if self.read_back { [groups.read_back(f)?, singles.read_back(f)?] } else { [1, 1] };
+        if groups > 0 {
+            self.query(f, target);
+            self.cast_rays(f, target);
+        } else {
+            f.skip(eovc::QueryGroups::INFO.name, NO_GROUPS);
+            f.skip(eovc::CastRays::INFO.name, NO_GROUPS);
+        }
+        if singles > 0 {
+            self.test_singles(f, target);
+        } else {
+            f.skip(eovc::TestSingles::INFO.name, NO_GROUPS);
+        }
+        Ok(())
+    }
+
+    fn query(&self, f: &mut Frame, target: &Target) {
+        self.open_boxes.clear(f, "eovc/clear_open", &self.no_boxes);
         let query = eovc::QueryGroups {
             nodes: self.tree.nodes(),
-            groups: self.groups.listed(),
-            views: self.groups.view(),
+            groups: self.groups.groups.listed(),
+            views: self.groups.groups.view(),
+            touched: self.groups.touched.all(),
+            open_groups: self.open_groups.all(),
+            open_command: self.open_boxes.command(),
+            frame: self.frame,
+        };
+        f.test_boxes(query, self.groups.groups.draw(), &target.test_only());
+    }
+
+    fn cast_rays(&self, f: &mut Frame, target: &Target) {
+        let cast = eovc::CastRays {
+            nodes: self.tree.nodes(),
+            open_groups: self.open_groups.all(),
+            views: self.groups.groups.view(),
             full: self.full.all(),
             hits: self.hits.all(),
             counters: self.counters.all(),
             depth: target.depth,
-            touched: self.touched.all(),
+            touched: self.groups.touched.all(),
             frame: self.frame,
-            constants: eovc::QueryGroupsConstants { count: self.counting },
+            constants: eovc::CastRaysConstants { count: self.counting },
         };
-        f.test_boxes(query, self.groups.draw(), &target.test_only());
+        f.test_boxes(cast, self.open_boxes.draw(), &target.test_only());
+    }
+
+    fn test_singles(&self, f: &mut Frame, target: &Target) {
         let test = eovc::TestSingles {
             nodes: self.tree.nodes(),
-            singles: self.singles.listed(),
-            views: self.singles.view(),
+            singles: self.groups.singles.listed(),
+            views: self.groups.groups.view(),
             hits: self.hits.all(),
-            touched: self.touched.all(),
+            touched: self.groups.touched.all(),
             frame: self.frame,
         };
-        f.test_boxes(test, self.singles.draw(), &target.test_only());
-        if self.coherent {
-            let (nodes, touched, node_count) = (self.tree.nodes(), self.touched.all(), self.tree.len() as u32);
-            f.dispatch(eovc::TouchPaths { nodes, touched, node_count, frame: self.frame }, node_count);
-        } else {
-            f.skip(eovc::TouchPaths::INFO.name, "not coherent");
-        }
+        f.test_boxes(test, self.groups.singles.draw(), &target.test_only());
     }
 
     /// Draws the objects that rays have met, and flags what shows (III.5).
-    fn render_occludees(&self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+    fn render_occludees(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         f.part("occludees");
         let select = eovc::SelectOccludees {
             hits: self.hits.all(),
@@ -236,7 +238,36 @@ impl Eovc {
         };
         f.dispatch(select, world.len() as u32);
         self.late.pack(f, world, self.newly.all());
-        world.draw_flagged(f, &self.late, self.visible[self.now].all(), view, target);
+        if self.read_back {
+            self.late.read_back(f)?;
+        }
+        match &self.order {
+            // Of two that are as near the owner of the last frame stays: otherwise they would take turns as occluders.
+            Some(order) => world.draw_behind(f, &self.late, order, view, target),
+            None => world.draw_flagged(f, &self.late, self.visible[self.now].all(), view, target),
+        }
+        Ok(())
+    }
+
+    /// The next frame's potential occluders are those flagged while drawing, or, filtered, those in front (III.6.2).
+    fn choose_occluders(&self, f: &mut Frame, target: &Target) -> Result<()> {
+        f.part("filtering");
+        if self.filters() {
+            let Some(owners) = target.item else {
+                let needs = "the item buffer for occluder filtering; bind it, or set eovc.of=false".into();
+                return Err(Error::Missing { method: "eovc", needs });
+            };
+            let strips = target.size[0].div_ceil(FILTER_STRIP);
+            let occluders = self.visible[self.now].all();
+            f.dispatch(
+                eovc::FilterOccluders { owners, occluders, size_px: target.size, strips },
+                strips * target.size[1],
+            );
+        } else {
+            f.skip(eovc::FilterOccluders::INFO.name, "occluder filtering is off");
+        }
+        f.part("");
+        Ok(())
     }
 
     /// Camera and objects unchanged: the last frame's lists hold.
@@ -244,16 +275,28 @@ impl Eovc {
         for (part, list) in [("mapping", &self.early), ("occludees", &self.late)] {
             f.part(part);
             list.skip_packing(f, Still::REASON);
-            world.draw(f, list, view, target);
+            match &self.order {
+                Some(order) if part == "occludees" => world.draw_behind(f, list, order, view, target),
+                _ => world.draw(f, list, view, target),
+            }
         }
-        f.part("groups");
-        f.skip(eovc::MarkPaths::INFO.name, Still::REASON);
-        f.skip(eovc::ExtractGroups::INFO.name, Still::REASON);
-        f.part("query");
-        for stage in [eovc::QueryGroups::INFO, eovc::TestSingles::INFO, eovc::TouchPaths::INFO] {
+        let stages = [
+            ("groups", eovc::MarkPaths::INFO),
+            ("groups", eovc::ExtractGroups::INFO),
+            ("groups", eovc::CullGroups::INFO),
+            ("query", eovc::QueryGroups::INFO),
+            ("query", eovc::CastRays::INFO),
+            ("query", eovc::TestSingles::INFO),
+            ("filtering", eovc::FilterOccluders::INFO),
+        ];
+        for (part, stage) in stages {
+            f.part(part);
             f.skip(stage.name, Still::REASON);
         }
         f.part("");
         Ok(())
     }
 }
+
+const NO_OBJECTS: &str = "no objects";
+const NO_GROUPS: &str = "no groups";

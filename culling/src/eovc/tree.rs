@@ -94,6 +94,11 @@ impl Tree {
         self.bvh.nodes().len()
     }
 
+    /// Steps from the root to the deepest leaf.
+    pub fn depth(&self) -> u32 {
+        self.bvh.depth()
+    }
+
     /// True if no object is in the tree.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -3,12 +3,8 @@
 
 use crate::boxes::twin::{crosses_near, grown};
 use crate::frustum::twin::{clip_from_bounds, footprint_widening, outside_frustum};
-use crate::hzb::twin::footprint_of;
 use scenes::bvh::{Bvh, NO_NODE};
-use shaders::types::{CullView, TreeNode};
-
-/// Twin of the constant in `eovc/extract_groups`.
-const TRUST_IN_HIDDEN: u32 = 16;
+use shaders::types::{CullView, TreeNode, ITEM_NONE, RAY_OBJECTS};
 
 /// 1 for each node on a way from an effective occluder to the root. Twin of `eovc/mark_paths`.
 pub fn mark_paths(bvh: &Bvh, occluders: &[u32]) -> Vec<u32> {
@@ -23,58 +19,56 @@ pub fn mark_paths(bvh: &Bvh, occluders: &[u32]) -> Vec<u32> {
     marked
 }
 
-/// What `eovc/extract_groups` knows of earlier frames.
-#[derive(Clone, Copy, Debug)]
-pub struct Coherence<'a> {
-    /// The last frame in which each node was tested.
-    pub tested: &'a [u32],
-    /// The last frame in which a pixel saw into each node.
-    pub touched: &'a [u32],
-    /// This frame.
-    pub frame: u32,
-    /// Pixels that a group may cover of which nothing is known.
-    pub most_pixels: u32,
+/// The occludee groups, ascending: nodes that are not marked below one that is, or the root if nothing is. Twin of
+/// `eovc/extract_groups`.
+pub fn extract_groups(nodes: &[TreeNode], marked: &[u32]) -> Vec<u32> {
+    let is_group = |node: &u32| {
+        let parent = nodes[*node as usize].parent;
+        marked[*node as usize] == 0 && (parent == NO_NODE || marked[parent as usize] != 0)
+    };
+    (0..nodes.len() as u32).filter(is_group).collect()
 }
 
-/// The groups and single objects (as nodes) whose boxes are rasterised, and the objects hit without a test, all ascending.
-/// `coherence` is none for the thesis' own groups. Twin of `eovc/extract_groups`.
-pub fn extract_groups(
+/// What becomes of groups before they are rasterised, as nodes and objects, all ascending.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Culled {
+    /// Groups whose boxes are rasterised.
+    pub groups: Vec<u32>,
+    /// Groups of one object, as nodes.
+    pub singles: Vec<u32>,
+    /// Objects that count as visible without a test.
+    pub hits: Vec<u32>,
+}
+
+/// Drops groups outside the view volume and opens some. `seen_into` says for each node whether a pixel of the last frame saw
+/// into it; none for the thesis' own groups. Twin of `eovc/cull_groups`.
+pub fn cull_groups(
     nodes: &[TreeNode],
-    marked: &[u32],
+    groups: &[u32],
     view: &CullView,
-    coherence: Option<Coherence<'_>>,
-) -> [Vec<u32>; 3] {
-    let [mut groups, mut singles, mut hits] = [const { Vec::new() }; 3];
-    let is_group = |node: usize| {
-        let parent = nodes[node].parent;
-        marked[node] == 0 && (parent == NO_NODE || marked[parent as usize] != 0)
-    };
-    let mut left: Vec<u32> = (0..nodes.len()).filter(|node| is_group(*node)).map(|node| node as u32).collect();
+    nothing_hides: bool,
+    seen_into: Option<&[bool]>,
+) -> Culled {
+    let mut culled = Culled::default();
+    let mut left = groups.to_vec();
     while let Some(index) = left.pop() {
         let node = &nodes[index as usize];
         let (clip, flags) = (clip_from_bounds(&node.bounds, view), node.bounds.flags);
         if outside_frustum(&clip, footprint_widening(flags, view)) {
             continue;
         }
-        let reaches_near = crosses_near(&clip_from_bounds(&grown(&node.bounds, view), view));
-        let opens = |known: Coherence<'_>| {
-            let footprint = footprint_of(&clip, view, flags);
-            let pixels = |axis: usize| footprint.last[axis] - footprint.first[axis] + 1;
-            let last_frame = known.frame - 1;
-            let trust = if known.tested[index as usize] == last_frame { TRUST_IN_HIDDEN } else { 1 };
-            known.touched[index as usize] == last_frame || pixels(0) * pixels(1) > known.most_pixels * trust
-        };
-        match (reaches_near, node.is_leaf != 0) {
-            (true, true) => hits.push(node.first_child),
-            (false, true) => singles.push(index),
-            (false, false) if !coherence.is_some_and(opens) => groups.push(index),
-            _ => left.extend([node.first_child, node.first_child + 1]),
+        let shows = nothing_hides || crosses_near(&clip_from_bounds(&grown(&node.bounds, view), view));
+        let opens =
+            shows || node.object_count > RAY_OBJECTS || seen_into.is_some_and(|seen_into| seen_into[index as usize]);
+        match (node.is_leaf != 0, opens) {
+            (true, _) if shows => culled.hits.push(node.first_child),
+            (true, _) => culled.singles.push(index),
+            (false, true) => left.extend([node.first_child, node.first_child + 1]),
+            (false, false) => culled.groups.push(index),
         }
     }
-    [groups, singles, hits].map(|mut list| {
-        list.sort_unstable();
-        list
-    })
+    [&mut culled.groups, &mut culled.singles, &mut culled.hits].into_iter().for_each(|list| list.sort_unstable());
+    culled
 }
 
 /// What the rays hit and was not drawn. Twin of `eovc/select_occludees`.
@@ -82,13 +76,9 @@ pub fn select_occludees(hits: &[u32], drawn: &[u32]) -> Vec<u32> {
     hits.iter().zip(drawn).map(|(hit, drawn)| u32::from(*hit != 0 && *drawn == 0)).collect()
 }
 
-/// Marks the way from each node touched in `frame` to the root. Twin of `eovc/touch_paths`.
-pub fn touch_paths(nodes: &[TreeNode], touched: &mut [u32], frame: u32) {
-    for node in (0..nodes.len()).filter(|node| touched[*node] == frame).collect::<Vec<_>>() {
-        let mut above = nodes[node].parent;
-        while above != NO_NODE && touched[above as usize] != frame {
-            touched[above as usize] = frame;
-            above = nodes[above as usize].parent;
-        }
-    }
+/// Whoever owns a pixel. Twin of `eovc/filter_occluders`.
+pub fn filter_occluders(owners: &[u32], object_count: usize) -> Vec<u32> {
+    let mut occluders = vec![0; object_count];
+    owners.iter().filter(|owner| **owner != ITEM_NONE).for_each(|owner| occluders[*owner as usize] = 1);
+    occluders
 }

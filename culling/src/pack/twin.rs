@@ -20,17 +20,25 @@ pub fn scan_counts(counts: &[u32]) -> (Vec<u32>, u32) {
 
 /// One command for each flagged object, in object order. Twin of `pack/write_commands`.
 pub fn write_commands(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]) -> Vec<DrawCommand> {
+    let (commands, _) = write_instances(flags, object_meshes, meshes);
+    commands.into_iter().filter(|command| command.instance_count > 0).collect()
+}
+
+/// One command for each object, of no instance if its flag is 0, and the end of the last that draws something. Twin of
+/// `pack/write_instances`.
+pub fn write_instances(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]) -> (Vec<DrawCommand>, u32) {
     let command = |object: usize| {
         let mesh = meshes[object_meshes[object] as usize];
         DrawCommand {
             index_count: mesh.index_count,
-            instance_count: 1,
+            instance_count: u32::from(flags[object] != 0),
             first_index: mesh.first_index,
             vertex_offset: mesh.vertex_offset,
             first_instance: object as u32,
         }
     };
-    (0..flags.len()).filter(|object| flags[*object] != 0).map(command).collect()
+    let end = flags.iter().rposition(|flag| *flag != 0).map_or(0, |last| last as u32 + 1);
+    ((0..flags.len()).map(command).collect(), end)
 }
 
 /// The indices of flagged objects, in order; their number is the draw's instances. Twin of `pack/write_indices`.

@@ -2,12 +2,14 @@
 
 mod drawn;
 mod still;
+mod ties;
 pub mod twin;
 mod upload;
 mod view;
 
 pub use drawn::{drawn_objects, Drawn};
 pub use still::{Still, SKIP_OPTION};
+pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};
 

@@ -1,5 +1,6 @@
 // eovc/mark_paths: from each effective occluder up to the root, every node on the way is visible; a node that another occluder
-// has marked ends the climb (EOVC thesis III.3, figure 3). Right under concurrency: whoever exchanges first goes on.
+// has marked ends the climb (EOVC thesis III.3, figure 3). Right under concurrency: whoever exchanges first goes on. A mark is
+// the frame's number, so that nothing need be cleared. Marked nodes are listed for the next stage, in no order.
 // Twin: culling/src/eovc/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,11 +12,17 @@ layout(set = 0, binding = 0, scalar) readonly buffer Occluders { uint items[]; }
 layout(set = 0, binding = 1, scalar) readonly buffer Leaves { uint items[]; } leaves;
 layout(set = 0, binding = 2, scalar) readonly buffer Nodes { TreeNode items[]; } nodes;
 layout(set = 0, binding = 3, scalar) buffer Marked { uint items[]; } marked;
-layout(push_constant, scalar) uniform Push { uint object_count; } push;
+layout(set = 0, binding = 4, scalar) writeonly buffer Visible { uint items[]; } visible;
+layout(set = 0, binding = 5, scalar) buffer Grids { uint items[]; } grids;
+layout(push_constant, scalar) uniform Push { uint object_count; uint frame; } push;
+#include "list.glsl"
 
 void main() {
     uint object = invocation_index();
     if (object >= push.object_count || occluders.items[object] == 0u) return;
     uint node = leaves.items[object];
-    while (node != TREE_NONE && atomicExchange(marked.items[node], 1u) == 0u) node = nodes.items[node].parent;
+    while (node != TREE_NONE && atomicExchange(marked.items[node], push.frame) != push.frame) {
+        visible.items[append_to(MARKED_LIST)] = node;
+        node = nodes.items[node].parent;
+    }
 }

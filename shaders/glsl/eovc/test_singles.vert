@@ -17,9 +17,5 @@ void main() {
     node = singles.items[gl_InstanceIndex];
     object = nodes.items[node].first_child;
     BoxView box_view = views.items[0];
-    CullView view = box_view.view;
-    Bounds bound = grown(nodes.items[node].bounds, view);
-    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
-    vec3 corner = near_faces_corner(centre, bound.half_extent, box_view.eye, uint(gl_VertexIndex));
-    gl_Position = view.clip_from_relative * vec4(corner, 1.0);
+    gl_Position = clip_from_near_corner(grown(nodes.items[node].bounds, box_view.view), box_view, gl_VertexIndex);
 }

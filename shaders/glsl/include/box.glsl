@@ -66,4 +66,11 @@ vec3 near_faces_corner(vec3 centre, vec3 half_extent, vec4 eye, uint corner) {
     vec3 away = vec3((corner & 1u) != 0u, (corner & 2u) != 0u, (corner & 4u) != 0u);
     return centre + half_extent * towards * (1.0 - 2.0 * away);
 }
+
+// The clip position of a corner (gl_VertexIndex) of the near faces of a box that has been grown.
+vec4 clip_from_near_corner(Bounds bound, BoxView box_view, int corner) {
+    CullView view = box_view.view;
+    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
+    return view.clip_from_relative * vec4(near_faces_corner(centre, bound.half_extent, box_view.eye, uint(corner)), 1.0);
+}
 #endif

@@ -13,6 +13,9 @@ const uint OBJECT_ALWAYS_KEPT = 4u;
 // How many visibility flags one invocation of the packing stages walks.
 const uint PACK_CHUNK = 64u;
 
+// Pixels of a row that one invocation of eovc/filter_occluders looks at.
+const uint FILTER_STRIP = 16u;
+
 // No object: the item buffer where nothing was drawn.
 const uint ITEM_NONE = 0xffffffffu;
 
@@ -100,4 +103,18 @@ struct TreeNode {
 };
 
 const uint TREE_NONE = 0xffffffffu;
+
+// Groups of more objects are opened, so that a ray meets few enough nodes: lavapipe ends the loops of an invocation at
+// 65,535 iterations without a word. A ray looks at 2 x this nodes at most, climbs as often, and notes hits as often.
+const uint RAY_OBJECTS = 4096u;
+
+// Levels of the hierarchy that one pass of eovc/cull_groups goes down: 31 nodes an invocation at most.
+const uint CULL_LEVELS = 4u;
+
+// Words of a pass's grid: work groups in x, y and z, then how many nodes are listed.
+const uint GRID_WORDS = 4u;
+
+// EOVC's lists by number: marked nodes, then what the passes of eovc/cull_groups start from.
+const uint MARKED_LIST = 0u;
+const uint FIRST_CULL_LIST = 1u;
 #endif

@@ -4,7 +4,7 @@ use culling::pack::twin;
 use culling::{DrawList, World};
 use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
-use shaders::pack::{CountFlags, ScanCounts, ScanCountsConstants, WriteCommands};
+use shaders::pack::{CountFlags, ScanCounts, ScanCountsConstants, WriteCommands, WriteInstances};
 use shaders::types::{DrawCommand, MeshRange, PACK_CHUNK};
 
 const STORAGE: Placement = Placement::Storage;
@@ -138,4 +138,37 @@ fn each_kind_of_primitive_is_packed_in_its_own_range() {
     let drawn = culling::drawn_objects(&gpu, &world, &report).unwrap();
     assert_eq!(drawn.objects, chosen.iter().map(|flag| *flag != 0).collect::<Vec<_>>());
     assert_eq!(drawn.draws, chosen.iter().filter(|flag| **flag != 0).count() as u64);
+}
+
+#[test]
+fn commands_without_instances_equal_their_twin() {
+    let gpu = gpu();
+    let mut random = Random::new(53);
+    for (count, first, share) in [(1, 0, 1.0), (64, 0, 0.0), (65, 3, 0.5), (5000, 17, 0.01)] {
+        let flags = flags(&mut random, count, share);
+        let meshes: Vec<_> = (0..5)
+            .map(|mesh| MeshRange { first_index: mesh * 7, index_count: 3 * mesh, vertex_offset: -(mesh as i32) })
+            .collect();
+        let object_meshes: Vec<u32> = (0..count).map(|_| random.below(5) as u32).collect();
+        let words = |data: &[u32]| Buffer::with_data(&gpu, "test.words", data, STORAGE).unwrap();
+        let (flags_gpu, object_meshes_gpu, end) = (words(&flags), words(&object_meshes), words(&[0]));
+        let meshes_gpu = Buffer::with_data(&gpu, "test.meshes", &meshes, STORAGE).unwrap();
+        let commands = Buffer::<DrawCommand>::new(&gpu, "test.commands", count, STORAGE).unwrap();
+        let stage = WriteInstances {
+            flags: flags_gpu.all(),
+            object_meshes: object_meshes_gpu.all(),
+            meshes: meshes_gpu.all(),
+            commands: commands.all(),
+            end: end.all(),
+            first_object: first as u32,
+            object_count: (count - first) as u32,
+        };
+        let mut f = gpu.frame();
+        f.dispatch(stage, (count - first) as u32);
+        f.finish().unwrap();
+        let (expected, last) = twin::write_instances(&flags, &object_meshes, &meshes);
+        assert_eq!(commands.read().unwrap()[first..], expected[first..], "{count} objects from {first}");
+        // The end counts from the range's first object.
+        assert_eq!(end.read().unwrap()[0], last.saturating_sub(first as u32), "{count} objects from {first}");
+    }
 }

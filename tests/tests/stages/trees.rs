@@ -5,7 +5,9 @@ use culling::{View, World};
 use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
 use scenes::bvh::{NodeState, Split};
-use shaders::types::{DrawCommand, TreeNode};
+use shaders::types::{
+    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, RAY_OBJECTS,
+};
 use shaders::{eovc, pack, roc};
 
 fn stored<T: bytemuck::Pod>(gpu: &Gpu, data: &[T]) -> Buffer<T> {
@@ -90,107 +92,204 @@ fn instances_are_listed_in_order() {
     }
 }
 
-fn marked_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> Vec<u32> {
-    let (occluders, marked) = (stored(gpu, occluders), zeros(gpu, stand.tree.len()));
+/// The numbers that the lists' grids start from: no entries, and one work group for the first.
+fn grids(gpu: &Gpu) -> Buffer<u32> {
+    let mut words = [0, 1, 1, 0].repeat(24);
+    words[0] = 1;
+    stored(gpu, &words)
+}
+
+fn length_of(grids: &Buffer<u32>, list: u32) -> usize {
+    grids.read().unwrap()[(list * GRID_WORDS + 3) as usize] as usize
+}
+
+/// What a list holds, ascending.
+fn listed(list: &Buffer<u32>, len: usize) -> Vec<u32> {
+    let mut entries = list.read().unwrap()[..len].to_vec();
+    entries.sort_unstable();
+    entries
+}
+
+/// A frame's number, as a mark.
+const FRAME: u32 = 7;
+
+/// Marked nodes as flags, and the groups beside them, ascending.
+fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let node_count = stand.tree.len();
+    let (occluders, grids) = (stored(gpu, occluders), grids(gpu));
+    let [marked, visible, groups] = [(); 3].map(|()| zeros(gpu, node_count));
+    let object_count = stand.world.len() as u32;
+    let (nodes, leaves, frame) = (stand.tree.nodes(), stand.tree.leaves(), FRAME);
+    let (all_marked, all_visible, all_grids) = (marked.all(), visible.all(), grids.all());
     let mut f = gpu.frame();
-    let stage = eovc::MarkPaths {
+    let mark = eovc::MarkPaths {
         occluders: occluders.all(),
-        leaves: stand.tree.leaves(),
-        nodes: stand.tree.nodes(),
-        marked: marked.all(),
-        object_count: stand.world.len() as u32,
+        leaves,
+        nodes,
+        marked: all_marked,
+        visible: all_visible,
+        grids: all_grids,
+        object_count,
+        frame,
     };
-    f.dispatch(stage, stand.world.len() as u32);
+    f.dispatch(mark, object_count);
+    let extract = eovc::ExtractGroups {
+        nodes,
+        marked: all_marked,
+        visible: all_visible,
+        groups: groups.all(),
+        grids: all_grids,
+        frame,
+    };
+    f.dispatch_indirect(extract, all_grids);
     f.finish().unwrap();
-    marked.read().unwrap()
+    let marked: Vec<u32> = marked.read().unwrap().iter().map(|mark| u32::from(*mark == FRAME)).collect();
+    let set = (0..node_count as u32).filter(|node| marked[*node as usize] != 0).collect::<Vec<_>>();
+    assert_eq!(listed(&visible, length_of(&grids, MARKED_LIST)), set, "each marked node is listed once");
+    (marked, listed(&groups, length_of(&grids, FIRST_CULL_LIST)))
 }
 
 #[test]
-fn marked_paths_are_the_thesis_visible_nodes() {
+fn groups_are_the_thesis_unknown_nodes() {
     let gpu = gpu();
     let mut random = Random::new(73);
     let stand = &stands(&gpu)[0];
     for rarity in [0, 1, 2, 10, 100] {
         let occluders = flags(&mut random, stand.world.len(), rarity);
-        let marked = marked_on_gpu(&gpu, stand, &occluders);
+        let (marked, groups) = extracted_on_gpu(&gpu, stand, &occluders);
         assert_eq!(marked, eovc_twin::mark_paths(stand.tree.host(), &occluders));
+        assert_eq!(groups, eovc_twin::extract_groups(&stand.nodes, &marked));
         let chosen: Vec<bool> = occluders.iter().map(|flag| *flag != 0).collect();
         let states = scenes::bvh::extract_groups(stand.tree.host(), &chosen);
-        let visible: Vec<u32> = states.iter().map(|state| u32::from(*state == NodeState::Visible)).collect();
-        assert_eq!(marked, visible);
+        let with = |wanted: NodeState| {
+            (0..states.len() as u32).filter(|node| states[*node as usize] == wanted).collect::<Vec<_>>()
+        };
+        let visible = (0..marked.len() as u32).filter(|node| marked[*node as usize] != 0).collect::<Vec<_>>();
+        assert_eq!((visible, groups), (with(NodeState::Visible), with(NodeState::Group)));
+    }
+}
+
+/// Runs the passes of `eovc/cull_groups` from `groups` on.
+fn culled_on_gpu(
+    gpu: &Gpu,
+    stand: &Stand,
+    groups: &[u32],
+    nothing_hides: bool,
+    seen_into: Option<&[bool]>,
+) -> eovc_twin::Culled {
+    let node_count = stand.nodes.len();
+    let mut words = grids(gpu).read().unwrap();
+    words[3] = u32::from(!nothing_hides);
+    let first = (FIRST_CULL_LIST * GRID_WORDS) as usize;
+    (words[first], words[first + 3]) = ((groups.len() as u32).div_ceil(64), groups.len() as u32);
+    let grids = stored(gpu, &words);
+    let starts = [zeros(gpu, node_count), zeros(gpu, node_count)];
+    let mut entries = groups.to_vec();
+    entries.resize(node_count, 0);
+    let first_starts = stored(gpu, &entries);
+    let [groups, singles] = [(); 2].map(|()| zeros(gpu, node_count));
+    let hits = zeros(gpu, stand.world.len());
+    let commands = [(); 2].map(|()| stored(gpu, &[DrawCommand::default()]));
+    let touched: Vec<u32> = (0..node_count)
+        .map(|node| if seen_into.is_some_and(|seen_into| seen_into[node]) { FRAME - 1 } else { FRAME - 2 })
+        .collect();
+    let touched = stored(gpu, &touched);
+    let mut f = gpu.frame();
+    for pass in 0..stand.tree.depth() / CULL_LEVELS + 1 {
+        let list = FIRST_CULL_LIST + pass;
+        let from = if pass == 0 { &first_starts } else { &starts[pass as usize % 2] };
+        let cull = eovc::CullGroups {
+            nodes: stand.tree.nodes(),
+            starts: from.all(),
+            unfinished: starts[1 - pass as usize % 2].all(),
+            grids: grids.all(),
+            groups: groups.all(),
+            group_command: commands[0].all(),
+            singles: singles.all(),
+            single_command: commands[1].all(),
+            hits: hits.all(),
+            touched: touched.all(),
+            view: stand.view.cull(),
+            frame: FRAME,
+            list,
+            constants: eovc::CullGroupsConstants { coherent: seen_into.is_some() },
+        };
+        f.dispatch_indirect(cull, grids.all().from((list * GRID_WORDS) as usize));
+    }
+    f.finish().unwrap();
+    let count = |which: usize| commands[which].read().unwrap()[0].instance_count as usize;
+    let hits = hits.read().unwrap();
+    eovc_twin::Culled {
+        groups: listed(&groups, count(0)),
+        singles: listed(&singles, count(1)),
+        hits: (0..hits.len() as u32).filter(|object| hits[*object as usize] != 0).collect(),
     }
 }
 
 #[test]
-fn extracted_groups_equal_their_twin() {
+fn culled_groups_equal_their_twin() {
     let gpu = gpu();
     let mut random = Random::new(74);
     for stand in stands(&gpu) {
-        let occluders = flags(&mut random, stand.world.len(), 20);
-        let marked = eovc_twin::mark_paths(stand.tree.host(), &occluders);
-        let stamps =
-            |random: &mut Random| (0..stand.nodes.len()).map(|_| 5 + random.below(2) as u32).collect::<Vec<_>>();
-        let (tested, touched) = (stamps(&mut random), stamps(&mut random));
-        for coherent in [false, true] {
-            let empty = [DrawCommand::default()];
-            let lists =
-                [zeros(&gpu, stand.nodes.len()), zeros(&gpu, stand.nodes.len()), zeros(&gpu, stand.world.len())];
-            let commands = [stored(&gpu, &empty), stored(&gpu, &empty)];
-            let stamps = [stored(&gpu, &marked), stored(&gpu, &tested), stored(&gpu, &touched)];
-            let mut f = gpu.frame();
-            let stage = eovc::ExtractGroups {
-                nodes: stand.tree.nodes(),
-                marked: stamps[0].all(),
-                groups: lists[0].all(),
-                group_command: commands[0].all(),
-                singles: lists[1].all(),
-                single_command: commands[1].all(),
-                hits: lists[2].all(),
-                tested: stamps[1].all(),
-                touched: stamps[2].all(),
-                view: stand.view.cull(),
-                node_count: stand.nodes.len() as u32,
-                frame: 7,
-                most_pixels: 16,
-                constants: eovc::ExtractGroupsConstants { coherent },
-            };
-            f.dispatch(stage, stand.nodes.len() as u32);
-            f.finish().unwrap();
-            let known = eovc_twin::Coherence { tested: &tested, touched: &touched, frame: 7, most_pixels: 16 };
-            let twin = eovc_twin::extract_groups(&stand.nodes, &marked, &stand.view.cull(), coherent.then_some(known));
-            for (which, expected) in twin.iter().take(2).enumerate() {
-                let count = commands[which].read().unwrap()[0].instance_count as usize;
-                let mut found = lists[which].read().unwrap()[..count].to_vec();
-                found.sort_unstable();
-                assert_eq!(&found, expected, "list {which}, coherent {coherent}");
+        for rarity in [0, 20] {
+            let occluders = flags(&mut random, stand.world.len(), rarity);
+            let nothing_hides = !occluders.contains(&1);
+            let groups = eovc_twin::extract_groups(&stand.nodes, &eovc_twin::mark_paths(stand.tree.host(), &occluders));
+            let seen_into: Vec<bool> = (0..stand.nodes.len()).map(|_| random.below(2) == 0).collect();
+            for seen_into in [None, Some(&seen_into[..])] {
+                let twin = eovc_twin::cull_groups(&stand.nodes, &groups, &stand.view.cull(), nothing_hides, seen_into);
+                assert!(nothing_hides || !twin.groups.is_empty(), "the case must have groups");
+                assert_eq!(culled_on_gpu(&gpu, &stand, &groups, nothing_hides, seen_into), twin);
             }
-            let hits = lists[2].read().unwrap();
-            let hit: Vec<u32> = (0..hits.len() as u32).filter(|object| hits[*object as usize] != 0).collect();
-            assert_eq!(hit, twin[2], "coherent {coherent}");
         }
     }
 }
 
 #[test]
-fn touched_paths_and_occludees_equal_their_twins() {
+fn groups_of_too_many_objects_for_a_ray_are_opened() {
+    let gpu = gpu();
+    let case = worlds::walled(3 * RAY_OBJECTS as usize);
+    let world = World::new(&gpu, &case.scene).unwrap();
+    let tree = Tree::new(&gpu, &world, Split::Sah).unwrap();
+    let nodes = tree.read_nodes().unwrap();
+    // From so far away that nothing reaches the near plane.
+    let shot = worlds::shot(glam::DVec3::new(0.0, 0.0, 60.0), glam::DVec3::ZERO, worlds::PERSPECTIVE);
+    let stand = Stand { view: View::new(&shot, [320, 180], 0, gpu.snap_px()), world, tree, nodes };
+    let culled = culled_on_gpu(&gpu, &stand, &[0], false, None);
+    assert_eq!(culled, eovc_twin::cull_groups(&stand.nodes, &[0], &stand.view.cull(), false, None));
+    assert!(culled.groups.len() > 1);
+    let most = culled.groups.iter().map(|group| stand.nodes[*group as usize].object_count).max();
+    assert!(most.is_some_and(|most| most <= RAY_OBJECTS), "{most:?}");
+}
+
+#[test]
+fn occludees_and_filtered_occluders_equal_their_twins() {
     let gpu = gpu();
     let mut random = Random::new(75);
-    let stand = &stands(&gpu)[0];
-    let mut touched: Vec<u32> = flags(&mut random, stand.nodes.len(), 50).iter().map(|flag| 8 + flag).collect();
-    let (touched_gpu, hits, drawn) =
-        (stored(&gpu, &touched), flags(&mut random, stand.world.len(), 3), flags(&mut random, stand.world.len(), 3));
-    let (hits_gpu, drawn_gpu, newly) = (stored(&gpu, &hits), stored(&gpu, &drawn), zeros(&gpu, stand.world.len()));
-    let (node_count, object_count) = (stand.nodes.len() as u32, stand.world.len() as u32);
+    let len = 1000;
+    let (hits, drawn) = (flags(&mut random, len, 3), flags(&mut random, len, 3));
+    let (hits_gpu, drawn_gpu, newly) = (stored(&gpu, &hits), stored(&gpu, &drawn), zeros(&gpu, len));
+    let object_count = len as u32;
+    let select =
+        eovc::SelectOccludees { hits: hits_gpu.all(), drawn: drawn_gpu.all(), newly: newly.all(), object_count };
     let mut f = gpu.frame();
-    let (nodes, marks) = (stand.tree.nodes(), touched_gpu.all());
-    f.dispatch(eovc::TouchPaths { nodes, touched: marks, node_count, frame: 9 }, node_count);
-    let (hits_all, drawn_all) = (hits_gpu.all(), drawn_gpu.all());
-    f.dispatch(
-        eovc::SelectOccludees { hits: hits_all, drawn: drawn_all, newly: newly.all(), object_count },
-        object_count,
-    );
+    f.dispatch(select, object_count);
     f.finish().unwrap();
-    eovc_twin::touch_paths(&stand.nodes, &mut touched, 9);
-    assert_eq!(touched_gpu.read().unwrap(), touched);
     assert_eq!(newly.read().unwrap(), eovc_twin::select_occludees(&hits, &drawn));
+    // Pictures of odd sizes, from the truth of a world.
+    for size in [[1, 1], [1, 257], [161, 97], [64, 3]] {
+        let case = worlds::walled(150).sized(size);
+        let mut lab = harness::Lab::new(&gpu, &case);
+        let truth = lab.truth(&case.shots[0]);
+        let occluders = zeros(&gpu, lab.world.len());
+        let strips = size[0].div_ceil(FILTER_STRIP);
+        let owners = lab.targets.with_items().item.unwrap();
+        let mut f = gpu.frame();
+        let stage = eovc::FilterOccluders { owners, occluders: occluders.all(), size_px: size, strips };
+        f.dispatch(stage, strips * size[1]);
+        f.finish().unwrap();
+        let twin = eovc_twin::filter_occluders(&truth.images().items, lab.world.len());
+        assert_eq!(occluders.read().unwrap(), twin, "{size:?}");
+        assert_eq!(twin.iter().filter(|flag| **flag != 0).count(), truth.visible_count());
+    }
 }

@@ -1,0 +1,55 @@
+//! The options of `eovc`.
+
+use crate::pack::Commands;
+use crate::{OptionInfo, Options};
+use scenes::bvh::Split;
+
+/// How the hierarchy is split, which groups are opened before they are rasterised, and the thesis' accelerations (III.6).
+pub const OPTIONS: &[OptionInfo] = &[
+    crate::world::SKIP_OPTION,
+    OptionInfo {
+        name: "of",
+        default: "true",
+        values: "true|false",
+        help: "occluder filtering: the item buffer names the next frame's occluders (thesis III.6.2)",
+    },
+    OptionInfo {
+        name: "cr",
+        default: "false",
+        values: "true|false",
+        help: "counter read-back: the host waits for counts and passes exact ones (thesis III.6.1)",
+    },
+    OptionInfo {
+        name: "commands",
+        default: "packed",
+        values: "packed|zero-instance",
+        help: "draw commands packed in object order, or one an object with no instance where nothing is drawn",
+    },
+    OptionInfo {
+        name: "bvh",
+        default: "sah",
+        values: "sah|middle|equal",
+        help: "how the hierarchy is split (thesis, table 4)",
+    },
+    OptionInfo {
+        name: "coherent",
+        default: "true",
+        values: "true|false",
+        help: "open groups that the last frame saw into, instead of casting rays there again; false is the thesis",
+    },
+];
+
+pub(super) fn split(options: &Options) -> Split {
+    match options.text("bvh") {
+        "middle" => Split::Middle,
+        "equal" => Split::EqualCount,
+        _ => Split::Sah,
+    }
+}
+
+pub(super) fn commands(options: &Options) -> Commands {
+    match options.text("commands") {
+        "zero-instance" => Commands::ZeroInstance,
+        _ => Commands::Packed,
+    }
+}
