@@ -4,6 +4,7 @@ pub mod bench;
 pub mod cli;
 pub mod commands;
 pub mod files;
+mod grid;
 pub mod metrics;
 pub mod png_out;
 pub mod results;
