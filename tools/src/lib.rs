@@ -11,5 +11,6 @@ pub mod results;
 pub mod run;
 pub mod session;
 pub mod stats;
+pub mod tables;
 pub mod targets;
 pub mod truth;

@@ -20,7 +20,7 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
     if arguments.frame >= arguments.scene.frames as usize {
         bail!("--frame {}: the run has only {} frames, counted from 0", arguments.frame, arguments.scene.frames);
     }
-    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session())?;
+    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
     let visible = match entry.id {
         "ref" => Some(RunTruth::visible_sets(&mut session, cache_folder().as_deref(), || ())?),
         _ => None,
