@@ -33,7 +33,7 @@ pub enum Command {
     /// Runs methods over a camera path: times, errors against the truth, stage by stage; writes results.json and results.csv
     #[command(after_help = BENCH_HELP)]
     Bench(BenchArgs),
-    /// Renders one frame to a PNG: colour, depth, item buffer or overdraw
+    /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
     /// Lists scenes; shows or exports one with its camera path
     Scene(SceneArgs),
@@ -160,6 +160,10 @@ pub enum Show {
     Items,
     /// How often each pixel was shaded
     Overdraw,
+    /// The boxes that the method rasterised to test what is in them, over the whole scene seen from above
+    Boxes,
+    /// The same boxes over the picture itself
+    BoxesFirstPerson,
 }
 
 /// `sightline shot`.

@@ -10,7 +10,7 @@ pub use tree::Tree;
 use crate::boxes::BoxList;
 use crate::pack::DrawList;
 use crate::world::Still;
-use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
+use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
 use scenes::bvh::Split;
 use shaders::types::DrawCommand;
@@ -131,6 +131,13 @@ impl Method for Eovc {
         let counted = self.counters.read()?;
         let boxes = u64::from(self.groups.read_len()?) + u64::from(self.singles.read_len()?);
         Ok(Work { boxes, rays: counted[0].into(), node_visits: counted[1].into(), queries: 0 })
+    }
+
+    fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
+        let of = |list: &BoxList| -> Result<Vec<scenes::Aabb>> {
+            Ok(list.read_listed()?.into_iter().map(|node| self.tree.host().nodes()[node as usize].bounds).collect())
+        };
+        Ok(Some(TestedBoxes { groups: of(&self.groups)?, singles: of(&self.singles)? }))
     }
 
     fn forget(&mut self) -> Result<()> {
