@@ -18,7 +18,7 @@ pub mod roc;
 pub mod world;
 
 pub use error::Error;
-pub use method::{Guarantee, Method, Setup, Work};
+pub use method::{Guarantee, Method, Setup, TestedBoxes, Work};
 pub use methods::{find, Entry, METHODS};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;

@@ -2,6 +2,7 @@
 
 use crate::{Options, Result, View, VisibleSets, World};
 use engine::{Frame, Gpu, Target};
+use scenes::Aabb;
 use std::sync::Arc;
 
 /// What a method promises. Tests hold it to that.
@@ -35,6 +36,16 @@ pub struct Work {
     pub node_visits: u64,
     /// Rays not cast because all that they could meet had been met.
     pub early_stops: u64,
+}
+
+/// The boxes that a frame rasterised to find out what is visible: world bounds in metres, before they are grown to cover all
+/// pixels that their contents can. As many as [`Work::boxes`] counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TestedBoxes {
+    /// Boxes of several objects.
+    pub groups: Vec<Aabb>,
+    /// Boxes of one object.
+    pub singles: Vec<Aabb>,
 }
 
 /// What a method is made from.
@@ -71,6 +82,12 @@ pub trait Method {
     /// What the last frame did beyond drawing, if counting was on; the device must be idle.
     fn work(&self) -> Result<Work> {
         Ok(Work::default())
+    }
+
+    /// The boxes that the last frame tested, read back; none if the method tests no boxes. The device must be idle. For
+    /// pictures and tests, never timed.
+    fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
+        Ok(None)
     }
 
     /// Forgets earlier frames: after a camera cut, or when a run starts again from its first frame.

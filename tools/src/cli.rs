@@ -1,9 +1,14 @@
 //! The command line.
 
+mod methods;
+
+pub use methods::{parse_methods, parse_setting};
+
 use crate::session::SessionOptions;
-use anyhow::{bail, Context, Result};
+use crate::tables::TABLES;
+use anyhow::{bail, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use culling::{Entry, Options, METHODS};
 use engine::{GpuOptions, TimerMode};
 use std::path::PathBuf;
 
@@ -28,7 +33,7 @@ pub enum Command {
     /// Runs methods over a camera path: times, errors against the truth, stage by stage; writes results.json and results.csv
     #[command(after_help = BENCH_HELP)]
     Bench(BenchArgs),
-    /// Renders one frame to a PNG: colour, depth, item buffer or overdraw
+    /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
     /// Lists scenes; shows or exports one with its camera path
     Scene(SceneArgs),
@@ -37,6 +42,8 @@ pub enum Command {
 }
 
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
+    A table takes its methods and settings from the paper; --set adds what it leaves open.\n\
+    Its path is spread over --frames: 600 is the EOVC thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
 
 /// Which device, and how it is watched.
@@ -68,9 +75,9 @@ pub enum TimerChoice {
 /// Which scene, path and picture size.
 #[derive(Args, Clone, Debug)]
 pub struct SceneChoice {
-    /// Scene name (see `sightline scene list`), or a .glb or .gltf file
-    #[arg(long, value_name = "NAME|FILE", default_value = "city-block")]
-    pub scene: String,
+    /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out
+    #[arg(long, value_name = "NAME|FILE", value_delimiter = ',')]
+    pub scene: Vec<String>,
     /// Objects of a procedural scene, as a multiple of its standard number
     #[arg(long, value_name = "F", default_value_t = 0.25)]
     pub scale: f64,
@@ -98,7 +105,7 @@ pub struct SceneChoice {
 #[derive(Args, Clone, Debug)]
 pub struct MethodChoice {
     /// Methods, separated by commas, or `all`
-    #[arg(long, value_name = "A,B,C|all", default_value = "all")]
+    #[arg(long, value_name = "A,B,C|all", default_value = "all", conflicts_with = "table")]
     pub method: String,
     /// Sets a method's option; may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
@@ -114,6 +121,11 @@ pub struct BenchArgs {
     /// Methods and options.
     #[command(flatten)]
     pub methods: MethodChoice,
+    /// Runs a published table on the scenes (city-block and rooms, unless --scene names some, separated by commas) and
+    /// prints its figures beside ours. The table chooses methods and settings; the path is the whole of closing-in,
+    /// as in the papers' sequences, unless --path names another
+    #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["capture", "json"])]
+    pub table: Option<String>,
     /// Device.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -126,10 +138,10 @@ pub struct BenchArgs {
     /// Captures this frame of each method with RenderDoc
     #[arg(long, value_name = "FRAME")]
     pub capture: Option<usize>,
-    /// Prints each stage: ran or skipped, why, and its time
+    /// Prints each stage: ran or skipped, why, and its time; then the parts of the frame with their share
     #[arg(long)]
     pub explain: bool,
-    /// Folder for results.json and results.csv
+    /// Folder for results.json and results.csv; of a table, for table-TABLE.txt and a folder with these two for each scene
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Prints results.json instead of the table
@@ -148,6 +160,10 @@ pub enum Show {
     Items,
     /// How often each pixel was shaded
     Overdraw,
+    /// The boxes that the method rasterised to test what is in them, over the whole scene seen from above
+    Boxes,
+    /// The same boxes over the picture itself
+    BoxesFirstPerson,
 }
 
 /// `sightline shot`.
@@ -204,9 +220,32 @@ pub enum SceneAction {
 
 impl SceneChoice {
     /// As a session takes it.
-    pub fn session(&self) -> SessionOptions {
+    ///
+    /// # Errors
+    /// More than one scene.
+    pub fn session(&self) -> Result<SessionOptions> {
+        Ok(self.session_of(self.one_scene()?))
+    }
+
+    /// The scene, where only one will do.
+    ///
+    /// # Errors
+    /// More than one scene.
+    pub fn one_scene(&self) -> Result<&str> {
+        match self.scene.as_slice() {
+            [] => Ok("city-block"),
+            [one] => Ok(one),
+            all => bail!(
+                "--scene {}: give one scene; only a table of `sightline bench --table` runs several",
+                all.join(",")
+            ),
+        }
+    }
+
+    /// As a session of one of the scenes takes it.
+    pub fn session_of(&self, scene: &str) -> SessionOptions {
         SessionOptions {
-            scene: self.scene.clone(),
+            scene: scene.to_owned(),
             scale: self.scale,
             seed: self.seed,
             path: self.path.clone(),
@@ -234,6 +273,12 @@ impl DeviceArgs {
     }
 }
 
+fn table_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(TABLES.iter().map(|table| {
+        PossibleValue::new(table.id).help(format!("{}, table {}: {}", table.paper.name, table.number, table.title))
+    }))
+}
+
 fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
     let parts =
         text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
@@ -241,78 +286,6 @@ fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
         Some(size) if !size.contains(&0) => Ok(size),
         _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
     }
-}
-
-/// Reads `a,b[option=value,…],c` or `all`, and applies `--set`. Each method may come several times with other options.
-pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry, Options)>> {
-    let specs =
-        if list == "all" { METHODS.iter().map(|entry| entry.id.to_owned()).collect() } else { split_methods(list)? };
-    let mut chosen = Vec::new();
-    for spec in &specs {
-        let (name, inside) = match spec.split_once('[') {
-            Some((name, rest)) => (name, rest.trim_end_matches(']')),
-            None => (spec.as_str(), ""),
-        };
-        let entry = culling::find(name)?;
-        let mut options = entry.default_options();
-        for set in sets {
-            let (method, setting) = set.split_once('.').with_context(|| bad_setting(set))?;
-            culling::find(method)?;
-            if method == name {
-                apply(&mut options, setting).with_context(|| format!("--set {set}"))?;
-            }
-        }
-        for setting in inside.split(',').filter(|setting| !setting.is_empty()) {
-            apply(&mut options, setting).with_context(|| format!("--method {spec}"))?;
-        }
-        chosen.push((entry, options));
-    }
-    check_unique(&chosen)?;
-    Ok(chosen)
-}
-
-fn apply(options: &mut Options, setting: &str) -> Result<()> {
-    let (name, value) = setting.split_once('=').with_context(|| bad_setting(setting))?;
-    Ok(options.set(name, value)?)
-}
-
-fn bad_setting(setting: &str) -> String {
-    format!("'{setting}' is no setting; write METHOD.OPTION=VALUE, as in hzb.texels=8")
-}
-
-fn split_methods(list: &str) -> Result<Vec<String>> {
-    let (mut specs, mut open) = (vec![String::new()], false);
-    for letter in list.chars() {
-        match letter {
-            '[' if open => bail!("--method {list}: '[' inside '['"),
-            '[' => open = true,
-            ']' => open = false,
-            _ => {}
-        }
-        match (letter, specs.last_mut()) {
-            (',', _) if !open => specs.push(String::new()),
-            (letter, Some(last)) => last.push(letter),
-            _ => {}
-        }
-    }
-    if open {
-        bail!("--method {list}: a '[' is not closed");
-    }
-    specs.iter_mut().for_each(|spec| *spec = spec.trim().to_owned());
-    specs.retain(|spec| !spec.is_empty());
-    if specs.is_empty() {
-        bail!("--method names no method; write for example --method none,hzb, or all");
-    }
-    Ok(specs)
-}
-
-fn check_unique(chosen: &[(&'static Entry, Options)]) -> Result<()> {
-    for (index, (_, options)) in chosen.iter().enumerate() {
-        if chosen[..index].iter().any(|(_, earlier)| earlier.label() == options.label()) {
-            bail!("method '{}' is there twice; give it other options, or name it once", options.label());
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -326,29 +299,18 @@ mod tests {
     }
 
     #[test]
-    fn methods_carry_their_options() {
-        let sets = ["hzb.skip=false".to_owned()];
-        let labels: Vec<_> = parse_methods("none,hzb,hzb[texels=8,skip=true]", &sets)
-            .unwrap()
-            .iter()
-            .map(|(_, options)| options.label())
-            .collect();
-        assert_eq!(labels, ["none", "hzb[skip=false]", "hzb[texels=8]"]);
-        assert_eq!(parse_methods("all", &[]).unwrap().len(), METHODS.len());
-    }
-
-    #[test]
-    fn faulty_methods_are_refused_by_name() {
-        let fault = |list: &str, set: &str| {
-            let sets: Vec<String> = [set.to_owned()].into_iter().filter(|set| !set.is_empty()).collect();
-            format!("{:#}", parse_methods(list, &sets).unwrap_err())
+    fn one_command_takes_one_scene_and_a_table_several() {
+        let bench = |line: &str| match Cli::try_parse_from(line.split(' ')).map(|cli| cli.command) {
+            Ok(Command::Bench(arguments)) => Ok(arguments),
+            other => Err(format!("{other:?}")),
         };
-        assert!(fault("nine", "").contains("no method 'nine'"));
-        assert!(fault("hzb,hzb", "").contains("'hzb' is there twice"));
-        assert!(fault("hzb[texels=8", "").contains("not closed"));
-        assert!(fault("hzb", "hzb.texels").contains("is no setting"));
-        assert!(fault("hzb", "hxb.texels=4").contains("no method 'hxb'"));
-        assert!(fault(",", "").contains("names no method"));
+        assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), "city-block");
+        let two = bench("sightline bench --scene rooms,boxes --scene city-block --table eovc-2").unwrap();
+        assert_eq!(two.scene.scene, ["rooms", "boxes", "city-block"]);
+        assert!(two.scene.one_scene().unwrap_err().to_string().contains("give one scene"));
+        for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
+            assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
+        }
     }
 
     #[test]

@@ -1,14 +1,18 @@
 //! The `sightline` program as a library: sessions, truth, metrics, results, and the commands.
 
 pub mod bench;
+pub mod boxes_view;
 pub mod cli;
 pub mod commands;
 pub mod files;
+mod grid;
+mod lines;
 pub mod metrics;
 pub mod png_out;
 pub mod results;
 pub mod run;
 pub mod session;
 pub mod stats;
+pub mod tables;
 pub mod targets;
 pub mod truth;

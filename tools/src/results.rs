@@ -3,12 +3,15 @@
 //!
 //! Fields are only ever added; a change of meaning raises [`SCHEMA`]. Readers ignore fields they do not know.
 
+mod check;
+mod parts;
 mod read;
 mod table;
 #[cfg(test)]
 mod tests;
 mod write;
 
+pub use parts::parts_table;
 pub use table::{stages_table, table};
 
 use crate::files::WriteError;
@@ -206,27 +209,12 @@ pub struct Frames {
     pub queries: Vec<u64>,
     /// Rays cast.
     pub rays: Vec<u64>,
-}
-
-impl Frames {
-    /// Name and length of every array.
-    fn lengths(&self) -> [(&'static str, usize); 13] {
-        [
-            ("frame_ms", self.frame_ms.len()),
-            ("drawn", self.drawn.len()),
-            ("ref_visible", self.ref_visible.len()),
-            ("false_negatives", self.false_negatives.len()),
-            ("differing_pixels", self.differing_pixels.len()),
-            ("tied_pixels", self.tied_pixels.len()),
-            ("psnr_db", self.psnr_db.len()),
-            ("ssim", self.ssim.len()),
-            ("triangles", self.triangles.len()),
-            ("draws", self.draws.len()),
-            ("overdraw", self.overdraw.len()),
-            ("queries", self.queries.len()),
-            ("rays", self.rays.len()),
-        ]
-    }
+    /// Boxes rasterised to test what is in them.
+    pub boxes: Vec<u64>,
+    /// Nodes that rays looked at.
+    pub node_visits: Vec<u64>,
+    /// By stage, under the names of [`Method::stages`], its milliseconds in each frame; `null`: it did not run there.
+    pub stages: BTreeMap<String, Vec<Option<f64>>>,
 }
 
 /// Why results could not be written or read. One line that names the file, and the field where there is one.
@@ -266,39 +254,6 @@ impl Results {
     pub fn method(&self, label: &str) -> Option<&Method> {
         self.methods.iter().find(|method| method.label == label)
     }
-
-    /// What the types do not say: the schema, unique labels, lengths of arrays, and numbers that are numbers.
-    fn check(&self) -> Result<(), Fault> {
-        let fault = |field: String, fault: String| Err(Fault { field, fault });
-        if self.schema != SCHEMA {
-            let reads = format!("is {}, but this program reads {SCHEMA}", self.schema);
-            return fault("schema".into(), reads);
-        }
-        if !self.speed.is_finite() {
-            return fault("speed".into(), "is not a finite number".into());
-        }
-        for (index, method) in self.methods.iter().enumerate() {
-            let at = |field: &str| format!("methods[{index}].{field}");
-            if method.label.is_empty() {
-                return fault(at("label"), "is empty".into());
-            }
-            let mut earlier = self.methods[..index].iter();
-            if earlier.any(|other| other.label == method.label) {
-                let twice = format!("`{}` is there twice; labels are unique", method.label);
-                return fault(at("label"), twice);
-            }
-            for (name, length) in method.frames.lengths() {
-                if length != 0 && length != self.frames as usize {
-                    let wrong = format!("has {length} entries for {} frames", self.frames);
-                    return fault(at(&format!("frames.{name}")), wrong);
-                }
-            }
-            if let Some(name) = method.first_not_finite() {
-                return fault(at(&name), "is not a finite number".into());
-            }
-        }
-        Ok(())
-    }
 }
 
 impl Method {
@@ -315,45 +270,5 @@ impl Method {
         self.drawn_mean = errors.drawn_mean;
         self.culled_over_total = errors.culled_over_total;
         self.culled_over_ref = errors.culled_over_ref;
-    }
-
-    /// JSON has no NaN and no infinity: serde writes `null`, which would read as "identical" or not at all.
-    fn first_not_finite(&self) -> Option<String> {
-        let scalars = [
-            ("frame_ms.median", Some(self.frame_ms.median)),
-            ("frame_ms.p95", Some(self.frame_ms.p95)),
-            ("frame_ms.mean", Some(self.frame_ms.mean)),
-            ("host_ms", self.host_ms),
-            ("object_error_percent", Some(self.object_error_percent)),
-            ("differing_pixels_mean", Some(self.differing_pixels_mean)),
-            ("tied_pixels_mean", Some(self.tied_pixels_mean)),
-            ("psnr_mean_db", self.psnr_mean_db),
-            ("psnr_worst_db", self.psnr_worst_db),
-            ("ssim_mean", Some(self.ssim_mean)),
-            ("drawn_mean", Some(self.drawn_mean)),
-            ("culled_over_total", Some(self.culled_over_total)),
-            ("culled_over_ref", Some(self.culled_over_ref)),
-            ("triangles_mean", Some(self.triangles_mean)),
-            ("draws_mean", Some(self.draws_mean)),
-            ("overdraw_mean", self.overdraw_mean),
-            ("queries_mean", Some(self.queries_mean)),
-            ("rays_mean", Some(self.rays_mean)),
-            ("device_memory_mib", Some(self.device_memory_mib)),
-        ];
-        let scalars = scalars.map(|(name, value)| (name.to_string(), value));
-        let stages = self.stages.iter().enumerate().flat_map(|(index, stage)| {
-            let at = |field: &str| format!("stages[{index}].{field}");
-            [(at("median_ms"), Some(stage.median_ms)), (at("share"), Some(stage.share))]
-        });
-        let plain =
-            [("frame_ms", &self.frames.frame_ms), ("ssim", &self.frames.ssim), ("overdraw", &self.frames.overdraw)];
-        let arrays = plain.into_iter().flat_map(|(name, values)| {
-            let at = move |(frame, &value)| (format!("frames.{name}[{frame}]"), Some(value));
-            values.iter().enumerate().map(at)
-        });
-        let psnr = self.frames.psnr_db.iter().enumerate();
-        let psnr = psnr.map(|(frame, &value)| (format!("frames.psnr_db[{frame}]"), value));
-        let mut all = scalars.into_iter().chain(stages).chain(arrays).chain(psnr);
-        all.find(|(_, value)| value.is_some_and(|v| !v.is_finite())).map(|(name, _)| name)
     }
 }

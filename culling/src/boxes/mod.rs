@@ -128,6 +128,13 @@ impl BoxList {
     pub fn read_len(&self) -> Result<u32> {
         Ok(self.command.read()?.first().map_or(0, |command| command.instance_count))
     }
+
+    /// What the last frame listed, in the order of the list.
+    pub fn read_listed(&self) -> Result<Vec<u32>> {
+        let mut listed = self.listed.read()?;
+        listed.truncate(self.read_len()? as usize);
+        Ok(listed)
+    }
 }
 
 /// The frame's view with its eye and its rays, in f64 from the matrix alone, so that any projection will do.

@@ -13,7 +13,7 @@ pub use tree::Tree;
 use crate::boxes::BoxList;
 use crate::pack::DrawList;
 use crate::world::{LastToFirst, Still};
-use crate::{Error, Method, Result, Setup, View, Work, World};
+use crate::{Error, Method, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
 use groups::Groups;
 use shaders::types::{DrawCommand, FILTER_STRIP};
@@ -113,6 +113,13 @@ impl Method for Eovc {
         let boxes = u64::from(self.groups.groups.read_len()?) + u64::from(self.groups.singles.read_len()?);
         let [rays, node_visits, early_stops] = [0, 1, 2].map(|counter| u64::from(counted[counter]));
         Ok(Work { boxes, rays, node_visits, early_stops, queries: 0 })
+    }
+
+    fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
+        let of = |list: &BoxList| -> Result<Vec<scenes::Aabb>> {
+            Ok(list.read_listed()?.into_iter().map(|node| self.tree.host().nodes()[node as usize].bounds).collect())
+        };
+        Ok(Some(TestedBoxes { groups: of(&self.groups.groups)?, singles: of(&self.groups.singles)? }))
     }
 
     fn forget(&mut self) -> Result<()> {

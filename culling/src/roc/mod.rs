@@ -6,7 +6,7 @@ pub mod twin;
 use crate::boxes::BoxList;
 use crate::pack::DrawList;
 use crate::world::Still;
-use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
+use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
 use shaders::{roc, Stage};
 
@@ -88,6 +88,12 @@ impl Method for Roc {
 
     fn work(&self) -> Result<Work> {
         Ok(Work { boxes: u64::from(self.box_list.read_len()?), ..Work::default() })
+    }
+
+    fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
+        let boxes = world.host_bounds();
+        let singles = self.box_list.read_listed()?.into_iter().map(|object| boxes[object as usize]).collect();
+        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
     }
 
     fn forget(&mut self) -> Result<()> {

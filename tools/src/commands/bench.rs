@@ -3,7 +3,7 @@
 use super::say;
 use crate::bench::{bench, write, BenchOptions, CaptureOrder};
 use crate::cli::{parse_methods, BenchArgs};
-use crate::results::{stages_table, table};
+use crate::results::{parts_table, stages_table, table};
 use crate::session::{cache_folder, Session};
 use anyhow::{bail, Context, Result};
 use engine::Capture;
@@ -14,8 +14,8 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
     let methods = parse_methods(&arguments.methods.method, &arguments.methods.set)?;
     let capture = capture(arguments)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session())?;
-    let bar = ProgressBar::new(session.frames() as u64).with_style(style()?);
+    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
+    let bar = Bar::new(&session)?;
     let options = BenchOptions {
         methods,
         warmup: arguments.warmup as usize,
@@ -24,13 +24,9 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         cache: cache_folder(),
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
-    let mut progress = |what: &str, done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-        bar.set_message(what.to_owned());
-    };
+    let mut progress = |what: &str, done: usize, all: usize| bar.show(what, done, all);
     let results = bench(&mut session, options, &mut progress)?;
-    bar.finish_and_clear();
+    bar.clear();
     write(&results, &arguments.out)?;
     if arguments.json {
         return say(&serde_json::to_string_pretty(&results)?);
@@ -39,6 +35,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     if arguments.explain {
         for method in &results.methods {
             say(&stages_table(&results, method))?;
+            say(&parts_table(method))?;
         }
     }
     say(&format!("{} and results.csv are in {}", "results.json", arguments.out.display()))
@@ -56,6 +53,25 @@ fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
     Ok(Some(CaptureOrder { frame, folder: arguments.out.clone(), library: Capture::load()? }))
 }
 
-fn style() -> Result<ProgressStyle> {
-    Ok(ProgressStyle::with_template("{msg:18} {wide_bar} {pos}/{len} {eta}")?)
+/// A progress bar on the terminal.
+pub(super) struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for a session's frames.
+    pub(super) fn new(session: &Session) -> Result<Self> {
+        let style = ProgressStyle::with_template("{msg:18} {wide_bar} {pos}/{len} {eta}")?;
+        Ok(Bar(ProgressBar::new(session.frames() as u64).with_style(style)))
+    }
+
+    /// Shows what is done, how many steps of it, and of how many.
+    pub(super) fn show(&self, what: &str, done: usize, all: usize) {
+        self.0.set_length(all as u64);
+        self.0.set_position(done as u64);
+        self.0.set_message(what.to_owned());
+    }
+
+    /// Takes the bar away.
+    pub(super) fn clear(&self) {
+        self.0.finish_and_clear();
+    }
 }

@@ -4,6 +4,7 @@ mod bench;
 mod info;
 mod scene;
 mod shot;
+mod table;
 
 use crate::cli::{Cli, Command};
 use anyhow::Result;
@@ -12,7 +13,10 @@ use std::io::{ErrorKind, Write};
 /// Runs the command that was typed.
 pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
-        Command::Bench(arguments) => bench::run(&arguments),
+        Command::Bench(arguments) => match &arguments.table {
+            Some(table) => table::run(&arguments, table),
+            None => bench::run(&arguments),
+        },
         Command::Shot(arguments) => shot::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),

@@ -26,7 +26,7 @@ fn list() -> Result<()> {
 }
 
 fn open(choice: &SceneChoice) -> Result<(Scene, CameraPath)> {
-    let scene = scenes::open(&choice.scene, &SceneOptions { scale: choice.scale, seed: choice.seed })?;
+    let scene = scenes::open(choice.one_scene()?, &SceneOptions { scale: choice.scale, seed: choice.seed })?;
     let path = match choice.path.as_deref() {
         Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), choice.speed)?,
         name => CameraPath::named(&scene, name, choice.speed)?,

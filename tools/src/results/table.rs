@@ -1,9 +1,8 @@
 //! The tables on the terminal: one row per method, and one row per stage for `--explain`. Both fit 120 columns.
 
 use super::{Method, Results, Stage};
+use crate::grid::{clipped, milliseconds, Grid};
 
-/// Widest line of any table.
-const WIDTH: usize = 120;
 /// A longer label gets a line of its own above its numbers: a shortened one could no longer be told from another.
 const LABEL_WIDTH: usize = 22;
 
@@ -87,7 +86,7 @@ fn columns(results: &Results) -> Vec<Column> {
     columns
 }
 
-fn heading(results: &Results) -> Vec<String> {
+pub(crate) fn heading(results: &Results) -> Vec<String> {
     let Results { scene, device, .. } = results;
     let run = format!(
         "{}: {} objects, {} triangles · path {} at speed {} · {} frames of {}x{}",
@@ -102,25 +101,6 @@ fn heading(results: &Results) -> Vec<String> {
     );
     let on = format!("{} ({}) · {} · Vulkan {}", device.name, device.kind, device.driver, device.api_version);
     vec![clipped(&run), clipped(&on)]
-}
-
-/// Cut to the table's width, with a sign that it was cut.
-fn clipped(line: &str) -> String {
-    if line.chars().count() <= WIDTH {
-        return line.to_string();
-    }
-    line.chars().take(WIDTH - 1).chain(['…']).collect()
-}
-
-/// Three significant digits or more, so that 0.014 ms and 1824 ms both say something.
-fn milliseconds(ms: f64) -> String {
-    let decimals = match ms {
-        ms if ms < 9.9995 => 3,
-        ms if ms < 99.995 => 2,
-        ms if ms < 999.95 => 1,
-        _ => 0,
-    };
-    format!("{ms:.decimals$}")
 }
 
 fn ratio(part: f64, base: f64) -> String {
@@ -168,59 +148,5 @@ fn quantity(count: f64) -> String {
         count if count < 999.95e3 => format!("{:.1}k", count / 1e3),
         count if count < 999.95e6 => format!("{:.1}M", count / 1e6),
         count => format!("{:.1}G", count / 1e9),
-    }
-}
-
-/// Rows with a label on the left and right-aligned cells.
-struct Grid {
-    heads: Vec<&'static str>,
-    label_limit: usize,
-    rows: Vec<(String, Vec<String>)>,
-}
-
-impl Grid {
-    fn new(heads: Vec<&'static str>, label_limit: usize) -> Self {
-        Self { heads, label_limit, rows: Vec::new() }
-    }
-
-    /// Lines that a row with this label takes.
-    fn lines_of(&self, label: &str) -> usize {
-        let length = label.chars().count();
-        if length <= self.label_limit {
-            1
-        } else {
-            length.div_ceil(WIDTH) + 1
-        }
-    }
-
-    fn lines(&self, label_head: &str) -> Vec<String> {
-        let fitting = self.rows.iter().map(|(label, _)| label.chars().count());
-        let fitting = fitting.filter(|&length| length <= self.label_limit);
-        let label_width = fitting.chain([label_head.chars().count()]).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.heads.len())
-            .map(|column| {
-                let cells = self.rows.iter().map(|(_, cells)| cells[column].chars().count());
-                cells.chain([self.heads[column].chars().count()]).max().unwrap_or(0)
-            })
-            .collect();
-        let line = |label: &str, cells: &mut dyn Iterator<Item = &str>| {
-            let mut line = format!("{label:label_width$}");
-            for (cell, width) in cells.zip(&widths) {
-                line.push_str(&format!("  {cell:>width$}"));
-            }
-            line
-        };
-        let mut lines = vec![line(label_head, &mut self.heads.iter().copied())];
-        for (label, cells) in &self.rows {
-            let mut cells = cells.iter().map(String::as_str);
-            if self.lines_of(label) == 1 {
-                lines.push(line(label, &mut cells));
-                continue;
-            }
-            let letters: Vec<char> = label.chars().collect();
-            lines.extend(letters.chunks(WIDTH).map(|part| part.iter().collect()));
-            lines.push(line("", &mut cells));
-        }
-        lines
     }
 }

@@ -29,6 +29,9 @@ fn results() -> Results {
     warped.differing_pixels_mean = 0.004;
     (warped.psnr_mean_db, warped.psnr_worst_db) = (Some(51.25), Some(48.0625));
     warped.frames.psnr_db = vec![None, Some(48.0625)];
+    warped.frames.stages =
+        [("warp/search".to_owned(), vec![None, Some(0.5)]), ("draw/all".to_owned(), vec![Some(12.0), Some(11.5)])]
+            .into();
     warped.culled_over_ref = 0.9996;
     warped.drawn_mean = 1234.4;
     warped.overdraw_mean = None;
@@ -170,6 +173,12 @@ fn what_breaks_the_contract_is_not_written() {
     assert!(nan.contains("methods[1].stages[2].share"), "{nan}");
     let short = refused(|r| r.methods[0].frames.drawn = vec![1]);
     assert!(short.contains("methods[0].frames.drawn: has 1 entries for 2 frames"), "{short}");
+    let short = refused(|r| r.methods[0].frames.boxes = vec![1; 3]);
+    assert!(short.contains("methods[0].frames.boxes: has 3 entries for 2 frames"), "{short}");
+    let short = refused(|r| _ = r.methods[1].frames.stages.insert("draw/all".into(), vec![None]));
+    assert!(short.contains("methods[1].frames.stages.draw/all: has 1 entries for 2 frames"), "{short}");
+    let nan = refused(|r| _ = r.methods[1].frames.stages.insert("draw/all".into(), vec![None, Some(f64::NAN)]));
+    assert!(nan.contains("methods[1].frames.stages.draw/all[1]: is not a finite number"), "{nan}");
     assert!(folder.names().is_empty());
 }
 
@@ -254,6 +263,35 @@ draw/all             ran  12.00  96.0 %
     let found = stages_table(&results, &results.methods[1]);
     let reason = found.lines().find(|line| line.ends_with("no rapid objects"));
     assert!(reason.unwrap().contains("skipped"), "{found}");
+}
+
+#[test]
+fn a_stage_that_did_not_run_is_null_in_that_frame() {
+    let json = serde_json::to_value(results()).unwrap();
+    let frames = &json["methods"][1]["frames"];
+    assert_eq!(frames["stages"]["warp/search"], serde_json::json!([null, 0.5]));
+    for field in "boxes node_visits rays".split(' ') {
+        assert!(frames[field].is_array(), "{field}");
+    }
+}
+
+#[test]
+fn parts_of_the_frame_and_what_is_between_stages_add_up_to_it() {
+    let mut method = method("eovc", "eovc", 10.0);
+    let stage = |name: &str| Stage { name: name.into(), ..Stage::default() };
+    method.stages = ["draw/clear", "pack/scan:mapping", "draw/flags:mapping", "pack/scan:occludees"].map(stage).into();
+    let times = [vec![Some(1.0), Some(1.0)], vec![Some(2.0), None], vec![Some(3.0), Some(1.0)], vec![None, Some(4.0)]];
+    method.frames.stages = method.stages.iter().map(|stage| stage.name.clone()).zip(times).collect();
+    let expected = "\
+part            mean ms  of frame
+no part           1.000    10.0 %
+mapping           3.000    30.0 %
+occludees         2.000    20.0 %
+between stages    4.000    40.0 %
+";
+    assert_eq!(parts_table(&method), expected);
+    method.stages.truncate(1);
+    assert_eq!(parts_table(&method), "", "a method without parts has no breakdown");
 }
 
 #[test]

@@ -108,5 +108,7 @@ const SCALARS: &[(&str, Cell)] = &[
     ("overdraw_mean", |_, m| optional(m.overdraw_mean)),
     ("queries_mean", |_, m| m.queries_mean.to_string()),
     ("rays_mean", |_, m| m.rays_mean.to_string()),
+    ("boxes_mean", |_, m| m.boxes_mean.to_string()),
+    ("node_visits_mean", |_, m| m.node_visits_mean.to_string()),
     ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
 ];
