@@ -1,8 +1,10 @@
 //! Small worlds, each hard in one way, with a camera that stands still, moves, turns and jumps.
 
+pub mod chance;
 pub mod special;
 
-pub use special::{special, special_projections};
+pub use chance::chance;
+pub use special::{oblique, special, special_projections};
 
 use crate::Random;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
