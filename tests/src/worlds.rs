@@ -64,7 +64,7 @@ impl Maker {
 /// A mesh with normals that point away from its middle.
 pub fn mesh(name: &str, topology: Topology, positions: Vec<Vec3>, indices: Vec<u32>) -> Mesh {
     let normals = positions.iter().map(|position| position.normalize_or(Vec3::Z)).collect();
-    Mesh { name: name.into(), topology, positions, normals, indices }
+    Mesh { name: name.into(), topology, positions, normals, indices, declared_bounds: None }
 }
 
 /// The cube from -1/2 to 1/2.

@@ -22,6 +22,7 @@ pub fn special() -> Vec<Case> {
         inside_a_box(),
         stepping_into_boxes(),
         creeping(),
+        bad_bounds(),
         far_from_the_origin(),
         near_and_far(),
     ]
@@ -205,6 +206,15 @@ pub fn creeping() -> Case {
         shot(eye, eye - DVec3::Z, PERSPECTIVE)
     });
     Case { name: "creeping".into(), ..case.filmed(shots.collect()) }
+}
+
+/// Half of the declared boxes hold the eye, others are inverted, empty, NaN, infinite or too small; nobody has repaired them.
+pub fn bad_bounds() -> Case {
+    let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == "bad-bounds").unwrap();
+    let scene = (entry.make)(&scenes::SceneOptions { scale: 0.15, seed: 3 });
+    assert!(scene.bounds_faults().len() > 10 && scene.meshes.iter().any(|mesh| mesh.honoured_bounds().is_some()));
+    let eye = scene.cameras[0].pose.position;
+    Case::new("bad bounds", scene, wander(eye, eye - 12.0 * DVec3::Z, PERSPECTIVE))
 }
 
 fn far_from_the_origin() -> Case {
