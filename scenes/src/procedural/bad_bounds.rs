@@ -94,6 +94,9 @@ fn place(assembly: &mut Assembly, random: &mut Random, mesh: u32, [length, depth
     assembly.place(mesh, colour, turned(at, angle));
 }
 
+/// A name, and how it is built.
+type Shape = (&'static str, fn(&mut Parts));
+
 /// Plain shapes, up to a metre in size.
 const PLAIN: usize = 4;
 /// Ways to be wrong.
@@ -102,7 +105,7 @@ const WRONG: usize = 5;
 /// Each shape several times: as it is, with an oversized box, and with each kind of wrong one. Without `oversized` (half the
 /// side of such a box, metres) nothing is declared.
 fn bodies(assembly: &mut Assembly, oversized: Option<f64>) -> [[u32; PLAIN]; 2 + WRONG] {
-    let shapes: [(&str, fn(&mut Parts)); PLAIN] = [
+    let shapes: [Shape; PLAIN] = [
         ("crate", |parts| parts.cuboid([-0.4, 0.0, -0.3], [0.4, 0.7, 0.3])),
         ("drum", |parts| parts.cylinder([0.0; 3], [0.35, 0.35], 0.9, 24)),
         ("cone", |parts| parts.cylinder([0.0; 3], [0.4, 0.0], 0.8, 20)),
