@@ -237,7 +237,7 @@ pub fn any_size_is_exact(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<Strin
 /// Before a still camera, what shows is known soon: of the hidden objects that the view volume alone leaves, less than a
 /// quarter are drawn. A method that draws too much passes every law of the picture; this one is for it.
 ///
-/// The quarter is what [`walled`](crate::worlds::walled) allows: seven eighths of the hidden bodies lie wholly behind the wall.
+/// The quarter is a choice, not derived: far from what the methods reach in [`walled`](crate::worlds::walled) and from drawing all.
 pub fn what_a_wall_hides_is_culled(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let case = case.filmed(vec![case.shots[0]; 4]);
     let mut lab = Lab::new(gpu, &case);

@@ -16,10 +16,10 @@ enum Defect {
     RaysBackwards,
     /// Rays go a tenth of the picture beside their pixel.
     RaysBeside,
-    /// Rays meet boxes of half the size.
-    ShrunkForRays,
-    /// Boxes of half the size are rasterised.
-    ShrunkForRaster,
+    /// Groups are of half the size, for the raster and for rays: one binding serves both.
+    ShrunkGroups,
+    /// Single objects' boxes are of half the size.
+    ShrunkSingles,
     /// All is said to be hit before the first ray.
     FullFromTheStart,
     /// What was hit in earlier frames still stops rays.
@@ -223,9 +223,8 @@ impl Broken {
 
     fn query(&mut self, f: &mut Frame, target: &Target) -> culling::Result<()> {
         let shrunk_if = |defect: Defect| if self.defect == defect { self.shrunk.all() } else { self.tree.nodes() };
-        // One binding serves both stages: what is too small for rays is too small for the raster, unless nothing is hidden.
         let query = eovc::QueryGroups {
-            nodes: shrunk_if(Defect::ShrunkForRays),
+            nodes: shrunk_if(Defect::ShrunkGroups),
             groups: self.groups.boxes.listed(),
             views: self.views.all(),
             full: self.full.all(),
@@ -238,7 +237,7 @@ impl Broken {
         };
         f.test_boxes(query, self.groups.boxes.draw(), &target.test_only());
         let test = eovc::TestSingles {
-            nodes: shrunk_if(Defect::ShrunkForRaster),
+            nodes: shrunk_if(Defect::ShrunkSingles),
             singles: self.singles.boxes.listed(),
             views: self.views.all(),
             hits: self.hits.all(),
@@ -300,13 +299,13 @@ fn rays_beside_their_pixel_are_noticed() {
 }
 
 #[test]
-fn nodes_too_small_for_rays_are_noticed() {
-    caught([SOUND, |setup| make(setup, Defect::ShrunkForRays)], &small());
+fn groups_that_are_too_small_are_noticed() {
+    caught([SOUND, |setup| make(setup, Defect::ShrunkGroups)], &small());
 }
 
 #[test]
 fn boxes_of_single_objects_that_are_too_small_are_noticed() {
-    caught([SOUND, |setup| make(setup, Defect::ShrunkForRaster)], &worlds::special::creeping().sized([80, 49]));
+    caught([SOUND, |setup| make(setup, Defect::ShrunkSingles)], &worlds::special::creeping().sized([80, 49]));
 }
 
 #[test]
