@@ -88,6 +88,8 @@ impl Scene {
 /// So each bound costs three products however large the mesh. It is exact for transforms that keep axes on axes and for
 /// meshes that are boxes, never looser than the transformed local box, and at most 13 % too wide for a sphere.
 ///
+/// A mesh that declares a larger box than it needs has that box's reach.
+///
 /// Bounds are rounded outward by what the GPU's arithmetic can add, so they hold each vertex where the GPU puts it.
 #[derive(Clone, Debug)]
 pub struct WorldBounds {
@@ -130,13 +132,19 @@ fn direction_index(direction: [i32; 3]) -> usize {
 }
 
 impl Reach {
+    /// Of a mesh, or of the box that it declares, if that can be believed.
     fn of(mesh: &Mesh) -> Self {
-        if mesh.positions.is_empty() {
-            return Reach { farthest: [0.0; 27], largest: [0.0; 3] };
+        match mesh.honoured_bounds() {
+            Some(declared) => Self::of_points(declared.corners().into_iter()),
+            None if mesh.positions.is_empty() => Reach { farthest: [0.0; 27], largest: [0.0; 3] },
+            None => Self::of_points(mesh.positions.iter().map(|position| position.as_dvec3())),
         }
+    }
+
+    fn of_points(points: impl Iterator<Item = DVec3>) -> Self {
         let mut farthest = [f64::NEG_INFINITY; 27];
-        for position in &mesh.positions {
-            let [x, y, z] = position.as_dvec3().to_array();
+        for point in points {
+            let [x, y, z] = point.to_array();
             // The entries from 14 on are one of each pair of opposite directions.
             for index in 14..27 {
                 let (dx, dy, dz) = (index % 3, index / 3 % 3, index / 9);

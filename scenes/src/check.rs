@@ -10,7 +10,8 @@ pub const MOST_OBJECTS: usize = 1 << 24;
 
 impl Scene {
     /// Refuses what has no meaning: transforms, vertices or bounds that are not finite or leave the range of `f32`, indices out of
-    /// range, and scenes too large to address. Flat, point-sized and reflected objects are legal.
+    /// range, and scenes too large to address. Flat, point-sized and reflected objects are legal. Wrong declared bounds do no
+    /// harm and give a warning, see [`Scene::repair_bounds`].
     ///
     /// # Errors
     /// [`SceneError::BadObject`] with the object's name, or [`SceneError::TooLarge`].
@@ -31,6 +32,7 @@ impl Scene {
                 return Err(SceneError::BadObject { object: object.name.clone(), fault });
             }
         }
+        self.warn_of_bounds(&self.name);
         self.check_motion()
     }
 
@@ -137,6 +139,7 @@ mod tests {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
             normals: vec![Vec3::Z; 3],
             indices: vec![0, 1, 2],
+            declared_bounds: None,
         };
         let object = Object {
             name: "kite".into(),

@@ -79,7 +79,7 @@ impl Export {
                 self.primitives.push(Value::Null);
                 continue;
             }
-            let positions = self.binary.positions(&mesh.positions);
+            let positions = self.binary.positions(&mesh.positions, mesh.honoured_bounds());
             let normals = self.binary.vectors("VEC3", mesh.normals.iter().map(|normal| normal.to_array()));
             let indices = self.binary.indices(&mesh.indices);
             let mode = match mesh.topology {

@@ -54,6 +54,14 @@ fn hash_mesh(hash: &mut Sha256, mesh: &Mesh) {
     }
     hash_count(hash, mesh.indices.len());
     hash_numbers(hash, mesh.indices.iter().map(|index| index.to_le_bytes()));
+    // Paths that are made from a scene's bounds differ with them.
+    if let Some(declared) = mesh.honoured_bounds() {
+        hash.update(b"declared");
+        hash_numbers(
+            hash,
+            [declared.min, declared.max].iter().flat_map(|corner| corner.to_array()).map(f64::to_le_bytes),
+        );
+    }
 }
 
 fn hash_objects(hash: &mut Sha256, objects: &[Object]) {

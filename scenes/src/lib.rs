@@ -7,6 +7,7 @@ mod bounds;
 pub mod bvh;
 mod camera;
 mod check;
+mod declared;
 mod error;
 mod gltf;
 mod gltf_export;

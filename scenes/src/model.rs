@@ -29,6 +29,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Indices into `positions`; a multiple of 3, 2 or 1 by `topology`.
     pub indices: Vec<u32>,
+    /// The box that its maker says it lies in, in object space. Honoured if it holds every position, else ignored.
+    pub declared_bounds: Option<Aabb>,
 }
 
 /// One mesh primitive in the world: the unit of culling.

@@ -6,7 +6,7 @@ use crate::procedural::{SceneOptions, SCENES};
 use std::path::Path;
 
 /// Opens a procedural scene by name or alias, or a .glb or .gltf file. A name goes before a file of the same name.
-/// The scene has passed [`Scene::check`].
+/// The scene has passed [`Scene::check`], and wrong declared bounds are repaired with a warning.
 ///
 /// # Errors
 /// An unknown name, a scale that is not above 0 and finite, a file that cannot be read or is not a good scene.
@@ -14,13 +14,14 @@ pub fn open(name_or_file: &str, options: &SceneOptions) -> Result<Scene, SceneEr
     let entry = SCENES
         .iter()
         .find(|entry| name_or_file == entry.name || (name_or_file == entry.alias && !entry.alias.is_empty()));
-    let scene = match entry {
+    let mut scene = match entry {
         Some(entry) => {
             check_scale(options.scale)?;
             (entry.make)(options)
         }
         None => open_file(name_or_file)?,
     };
+    scene.repair_bounds(name_or_file);
     scene.check()?;
     Ok(scene)
 }

@@ -30,6 +30,7 @@ fn assert_same_objects(written: &Scene, read: &Scene) {
 fn assert_same_mesh(written: &Mesh, read: &Mesh) {
     assert_eq!((&written.name, written.topology), (&read.name, read.topology));
     assert!(written.positions == read.positions, "positions of {}", written.name);
+    assert_eq!(written.declared_bounds, read.declared_bounds, "{}", written.name);
     assert!(written.indices == read.indices, "indices of {}", written.name);
     // The import scales normals to length 1 once more, which may change their last bit.
     let close = |(a, b): (&Vec3, &Vec3)| a.abs_diff_eq(*b, 2e-7);
@@ -39,7 +40,7 @@ fn assert_same_mesh(written: &Mesh, read: &Mesh) {
 
 #[test]
 fn scenes_read_back_identical() {
-    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1)] {
+    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1), ("bad-bounds", 0.1)] {
         let mut scene = make(name, scale);
         scene.objects[3].translucent = true;
         scene.objects[3].colour[3] = 0.25;

@@ -50,7 +50,14 @@ fn the_same_options_give_the_same_scene() {
 
 #[test]
 fn objects_grow_with_scale() {
-    for (name, standard) in [("city-block", 94_000.0), ("rooms", 4_000.0), ("boxes", 402.0), ("moving-boxes", 402.0)] {
+    let standards = [
+        ("city-block", 94_000.0),
+        ("rooms", 4_000.0),
+        ("boxes", 402.0),
+        ("moving-boxes", 402.0),
+        ("bad-bounds", 2_000.0),
+    ];
+    for (name, standard) in standards {
         for scale in [0.25, 1.0, 2.0] {
             let count = make(name, scale, 1).objects.len() as f64;
             assert!((count / (standard * scale) - 1.0).abs() < 0.2, "{name} at {scale}: {count}");
@@ -86,6 +93,28 @@ fn from_the_street_most_of_the_city_is_hidden() {
         let visible = picture.visible() as f64 / city.objects.len() as f64;
         assert!(visible < 0.05, "frame {frame}: {visible}");
         assert!(picture.visible() > 50 && picture.covered() > 0.6, "frame {frame} shows no city");
+    }
+}
+
+#[test]
+fn the_eye_stands_in_half_of_all_bad_boxes() {
+    for (scale, seed) in [(0.1, 1), (1.0, 1), (1.0, 9), (4.0, 2)] {
+        let (bad, good) = (make("bad-bounds", scale, seed), make("good-bounds", scale, seed));
+        let around_the_eye = |scene: &Scene| {
+            let eye = scene.cameras[0].pose.position;
+            let holds = |object: &usize| scene.world_bounds(*object).contains(eye);
+            (0..scene.objects.len()).filter(holds).count()
+        };
+        let bodies = bad.objects.iter().filter(|object| bad.meshes[object.mesh as usize].name != "block").count();
+        assert_eq!(around_the_eye(&bad), bodies / 2);
+        assert_eq!(around_the_eye(&good), 0);
+        let drawn = |scene: &Scene| {
+            let place = |object: &scenes::Object| {
+                (scene.meshes[object.mesh as usize].positions.clone(), object.world_from_object)
+            };
+            scene.objects.iter().map(place).collect::<Vec<_>>()
+        };
+        assert!(drawn(&bad) == drawn(&good), "the two scenes differ in more than their boxes");
     }
 }
 

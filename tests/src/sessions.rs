@@ -8,10 +8,11 @@ use sightline::session::{Session, SessionOptions};
 use sightline::truth::RunTruth;
 
 /// Scene, scale and path of each run.
-pub const RUNS: [(&str, f64, &str); 10] = [
+pub const RUNS: [(&str, f64, &str); 11] = [
     ("city-block", 0.02, "walk"),
     ("city-block", 0.02, "rotate"),
     ("rooms", 0.1, "walk"),
+    ("bad-bounds", 0.1, "walk"),
     ("boxes", 1.0, "pan"),
     ("boxes", 1.0, "zoom"),
     ("boxes", 1.0, "closing-in"),

@@ -1,8 +1,10 @@
 //! Small worlds, each hard in one way, with a camera that stands still, moves, turns and jumps.
 
+pub mod chance;
 pub mod special;
 
-pub use special::{special, special_projections};
+pub use chance::chance;
+pub use special::{oblique, special, special_projections};
 
 use crate::Random;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -62,7 +64,7 @@ impl Maker {
 /// A mesh with normals that point away from its middle.
 pub fn mesh(name: &str, topology: Topology, positions: Vec<Vec3>, indices: Vec<u32>) -> Mesh {
     let normals = positions.iter().map(|position| position.normalize_or(Vec3::Z)).collect();
-    Mesh { name: name.into(), topology, positions, normals, indices }
+    Mesh { name: name.into(), topology, positions, normals, indices, declared_bounds: None }
 }
 
 /// The cube from -1/2 to 1/2.

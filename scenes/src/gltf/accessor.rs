@@ -6,6 +6,8 @@
 use super::buffers::Bytes;
 use super::document::{Accessor, Document};
 use super::fault::{broken, element, Fault, Outcome};
+use crate::model::Aabb;
+use glam::DVec3;
 use std::cell::Cell;
 
 /// Most elements of an accessor that has no bytes of its own, so that 30 bytes of JSON cannot ask for gigabytes.
@@ -125,6 +127,21 @@ impl<'a> Accessors<'a> {
             })
         };
         read().map_err(|fault| fault.within(|| format!("accessor {index}")))
+    }
+
+    /// The `min` and `max` that the JSON declares for vectors of three floats, rounded to the floats they stand for; none if
+    /// there are none, or of integers, whose bounds are not in the vectors' own unit.
+    pub(super) fn declared_box(&self, index: usize) -> Outcome<Option<Aabb>> {
+        let accessor = element(&self.document.accessors, index, "accessor")?;
+        if accessor.normalized || Component::from_number(accessor.component_type)? != Component::F32 {
+            return Ok(None);
+        }
+        let corner = |value: &serde_json::Value| -> Option<DVec3> {
+            let parts: Vec<f64> = value.as_array()?.iter().filter_map(serde_json::Value::as_f64).collect();
+            // Decimal digits are cut off by many writers: no vertex lies between a float and its digits.
+            Some(DVec3::from_array(parts.try_into().ok()?).as_vec3().as_dvec3())
+        };
+        Ok(corner(&accessor.min).zip(corner(&accessor.max)).map(|(min, max)| Aabb { min, max }))
     }
 
     /// Reads unsigned integers.

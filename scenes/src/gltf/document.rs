@@ -6,6 +6,7 @@
 use super::fault::{broken, Fault, Outcome};
 use serde::de::IgnoredAny;
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Extensions change nothing of what Sightline draws, but they must at least be objects.
@@ -40,6 +41,10 @@ pub(super) struct Accessor {
     #[serde(rename = "type")]
     pub kind: String,
     pub sparse: Option<Sparse>,
+    #[serde(default)]
+    pub min: Value,
+    #[serde(default)]
+    pub max: Value,
 }
 
 #[derive(Debug, Deserialize)]

@@ -32,9 +32,12 @@ pub(super) fn read(
         mesh.normals = same_count(accessors, normals_at, mesh.positions.len())
             .map_err(|fault| fault.within(|| "NORMAL".into()))?;
     }
+    mesh.declared_bounds = accessors.declared_box(positions_at)?.filter(|declared| *declared != mesh.bounds());
     for (index, (target, &weight)) in primitive.targets.iter().zip(weights).enumerate() {
         if weight != 0.0 {
             let place = || format!("morph target {index}");
+            // They are of the mesh before it is morphed.
+            mesh.declared_bounds = None;
             morph(accessors, target.get("POSITION"), weight, &mut mesh.positions)
                 .map_err(|fault| fault.within(place))?;
             morph(accessors, target.get("NORMAL"), weight, &mut mesh.normals).map_err(|fault| fault.within(place))?;

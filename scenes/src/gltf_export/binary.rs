@@ -1,5 +1,6 @@
 //! The binary chunk of a .glb, with the accessors and views on it.
 
+use crate::model::Aabb;
 use glam::Vec3;
 use serde_json::{json, Value};
 
@@ -15,10 +16,11 @@ pub(super) struct Binary {
 }
 
 impl Binary {
-    /// Vertex positions; glTF wants their bounds.
-    pub(super) fn positions(&mut self, positions: &[Vec3]) -> usize {
-        let min = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min).to_array().map(f64::from);
-        let max = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max).to_array().map(f64::from);
+    /// Vertex positions; glTF wants their bounds, `declared` or their own.
+    pub(super) fn positions(&mut self, positions: &[Vec3], declared: Option<Aabb>) -> usize {
+        let bounds =
+            declared.unwrap_or_else(|| Aabb::from_points(positions.iter().map(|position| position.as_dvec3())));
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
         let accessor = self.vectors("VEC3", positions.iter().map(|position| position.to_array()));
         (self.accessors[accessor]["min"], self.accessors[accessor]["max"]) = (json!(min), json!(max));
         accessor

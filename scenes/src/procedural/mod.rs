@@ -1,5 +1,6 @@
 //! Scenes made by rule from a seed, at any size. The same options always give the same bytes.
 
+mod bad_bounds;
 mod boxes;
 mod city_block;
 mod furniture;
@@ -64,6 +65,18 @@ pub const SCENES: &[Entry] = &[
         alias: "",
         about: "boxes of which a third orbit, spin or bob",
         make: moving_boxes::make,
+    },
+    Entry {
+        name: "bad-bounds",
+        alias: "",
+        about: "a street of 2,000 objects, half of whose declared boxes hold the eye, and some are plainly wrong",
+        make: bad_bounds::make_bad,
+    },
+    Entry {
+        name: "good-bounds",
+        alias: "",
+        about: "bad-bounds with the right boxes, to compare",
+        make: bad_bounds::make_good,
     },
 ];
 

@@ -16,7 +16,7 @@ impl Parts {
     /// The finished mesh.
     pub(super) fn mesh(self, name: &str) -> Mesh {
         let Parts { positions, normals, indices } = self;
-        Mesh { name: name.into(), topology: Topology::Triangles, positions, normals, indices }
+        Mesh { name: name.into(), topology: Topology::Triangles, positions, normals, indices, declared_bounds: None }
     }
 
     /// A flat face with its corners counter-clockwise from outside; three corners or more, convex.

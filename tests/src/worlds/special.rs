@@ -3,7 +3,7 @@
 use super::{cube, dust, mesh, shot, sized, square, turned, walled, wander, wires, Case, Maker, PERSPECTIVE};
 use crate::Random;
 use glam::{DMat4, DVec3, Vec3};
-use scenes::{Projection, Shot, Topology};
+use scenes::{Mesh, Projection, Shot, Topology};
 
 /// All of them.
 pub fn special() -> Vec<Case> {
@@ -13,12 +13,16 @@ pub fn special() -> Vec<Case> {
         topologies(),
         flat(),
         touching_boxes(),
+        sunk(),
         ties(),
         reflected(),
         projected("parallel camera", Projection::Orthographic { half_height: 3.5, near: -2.0, far: 30.0 }),
         projected("oblique camera", oblique()),
         projected("no far plane", Projection::Perspective { fov_y: 1.3, near: 0.01, far: None }),
         inside_a_box(),
+        stepping_into_boxes(),
+        creeping(),
+        bad_bounds(),
         far_from_the_origin(),
         near_and_far(),
     ]
@@ -69,6 +73,23 @@ fn touching_boxes() -> Case {
         }
     }
     Case::new("touching boxes", maker.scene, wander(DVec3::new(0.0, 0.0, 9.0), DVec3::ZERO, PERSPECTIVE))
+}
+
+/// Bodies half sunk into a wall: the near side of their boxes shows, the far side does not. Some keep only their skin out.
+pub fn sunk() -> Case {
+    let mut maker = Maker::new("sunk");
+    let mut random = Random::new(17);
+    let cube = maker.mesh(cube());
+    maker.place(cube, sized(DVec3::ZERO, DVec3::new(9.0, 6.0, 4.0)));
+    for body in 0..150 {
+        let at = random.vector() * DVec3::new(4.0, 2.5, 2.0);
+        let size = random.range(0.2, 0.9);
+        // Half of its height, or a thousandth of it, is outside.
+        let depth = if body % 3 == 0 { 2.0 - 0.499 * size } else { 2.0 };
+        let side = if at.z > 0.0 { depth } else { -depth };
+        maker.place(cube, sized(DVec3::new(at.x, at.y, side), DVec3::splat(size)));
+    }
+    Case::new("sunk", maker.scene, wander(DVec3::new(0.4, 0.3, 9.0), DVec3::ZERO, PERSPECTIVE))
 }
 
 /// The same thing at the same place several times, and squares that share a plane.
@@ -133,17 +154,22 @@ pub fn oblique() -> Projection {
     Projection::Custom(lean * clip)
 }
 
-/// The eye stands in the box of an object that has nothing there, and in a room.
-fn inside_a_box() -> Case {
-    let mut maker = Maker::new("inside a box");
-    let mut random = Random::new(15);
+/// Two slabs at the ends of a box that is empty between them.
+fn slabs() -> Mesh {
     let cube_mesh = cube();
     let slab = |x: f32| cube_mesh.positions.iter().map(move |p| *p * Vec3::new(0.1, 1.0, 1.0) + Vec3::new(x, 0.0, 0.0));
     let positions: Vec<Vec3> = slab(-0.45).chain(slab(0.45)).collect();
     let indices = cube_mesh.indices.iter().chain(&cube_mesh.indices).enumerate();
     let indices = indices.map(|(place, index)| index + if place < cube_mesh.indices.len() { 0 } else { 8 }).collect();
-    let slabs = maker.mesh(mesh("slabs", Topology::Triangles, positions, indices));
-    let cube = maker.mesh(cube_mesh);
+    mesh("slabs", Topology::Triangles, positions, indices)
+}
+
+/// The eye stands in the box of an object that has nothing there, and in a room.
+fn inside_a_box() -> Case {
+    let mut maker = Maker::new("inside a box");
+    let mut random = Random::new(15);
+    let slabs = maker.mesh(slabs());
+    let cube = maker.mesh(cube());
     maker.place(slabs, sized(DVec3::ZERO, DVec3::new(6.0, 4.0, 8.0)));
     maker.place(cube, sized(DVec3::ZERO, DVec3::splat(14.0)));
     for _ in 0..150 {
@@ -153,6 +179,42 @@ fn inside_a_box() -> Case {
         maker.place(cube, place);
     }
     Case::new("inside a box", maker.scene, wander(DVec3::new(0.0, 0.0, 1.5), DVec3::ZERO, PERSPECTIVE))
+}
+
+/// The eye jumps from box to box, each time into one that it did not see into before: the faces that it might see of the box
+/// lie behind and above it.
+pub fn stepping_into_boxes() -> Case {
+    let mut maker = Maker::new("stepping into boxes");
+    let (slabs, cube) = (maker.mesh(slabs()), maker.mesh(cube()));
+    let at = |step: i32| DVec3::new(f64::from(step % 3) * 4.0, 0.0, f64::from(step / 3) * 9.0);
+    for step in 0..9 {
+        maker.place(slabs, sized(at(step), DVec3::new(3.0, 8.0, 8.0)));
+        maker.place(cube, sized(at(step) + DVec3::new(2.0, 0.0, 0.0), DVec3::new(0.2, 8.0, 8.0)));
+    }
+    let look = |step: i32| {
+        let eye = at(step) + DVec3::splat(0.2);
+        shot(eye, eye - DVec3::X, PERSPECTIVE)
+    };
+    Case::new("stepping into boxes", maker.scene, [4, 0, 8, 2, 6, 1, 7].map(look).to_vec())
+}
+
+/// Along a wall in steps of centimetres: bodies come out from behind it by a pixel or two at a time.
+pub fn creeping() -> Case {
+    let case = walled(400);
+    let shots = (0..12).map(|step| {
+        let eye = DVec3::new(-2.0 + 0.03 * f64::from(step), 0.4, 7.0);
+        shot(eye, eye - DVec3::Z, PERSPECTIVE)
+    });
+    Case { name: "creeping".into(), ..case.filmed(shots.collect()) }
+}
+
+/// Half of the declared boxes hold the eye, others are inverted, empty, NaN, infinite or too small; nobody has repaired them.
+pub fn bad_bounds() -> Case {
+    let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == "bad-bounds").unwrap();
+    let scene = (entry.make)(&scenes::SceneOptions { scale: 0.15, seed: 3 });
+    assert!(scene.bounds_faults().len() > 10 && scene.meshes.iter().any(|mesh| mesh.honoured_bounds().is_some()));
+    let eye = scene.cameras[0].pose.position;
+    Case::new("bad bounds", scene, wander(eye, eye - 12.0 * DVec3::Z, PERSPECTIVE))
 }
 
 fn far_from_the_origin() -> Case {
