@@ -37,7 +37,11 @@ pub const STAGES: &[&StageInfo] = &[
     <pack::ScanCounts as Stage>::INFO,
     <pack::WriteCommands as Stage>::INFO,
     <pack::WriteIndices as Stage>::INFO,
+    <roc::AssignRanges as Stage>::INFO,
+    <roc::ListRanges as Stage>::INFO,
+    <roc::MeasureBoxes as Stage>::INFO,
     <roc::SelectBoxes as Stage>::INFO,
     <roc::TestBoxes as Stage>::INFO,
+    <roc::TestRange as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

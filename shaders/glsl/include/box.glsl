@@ -66,4 +66,12 @@ vec3 near_faces_corner(vec3 centre, vec3 half_extent, vec4 eye, uint corner) {
     vec3 away = vec3((corner & 1u) != 0u, (corner & 2u) != 0u, (corner & 4u) != 0u);
     return centre + half_extent * towards * (1.0 - 2.0 * away);
 }
+
+// Clip position of such a corner of the grown box.
+vec4 clip_from_grown_corner(Bounds bounds, BoxView box_view, uint corner) {
+    CullView view = box_view.view;
+    Bounds bound = grown(bounds, view);
+    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
+    return view.clip_from_relative * vec4(near_faces_corner(centre, bound.half_extent, box_view.eye, corner), 1.0);
+}
 #endif

@@ -14,10 +14,5 @@ invariant gl_Position;
 
 void main() {
     object = listed.items[gl_InstanceIndex];
-    BoxView box_view = views.items[0];
-    CullView view = box_view.view;
-    Bounds bound = grown(bounds.items[object], view);
-    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
-    vec3 corner = near_faces_corner(centre, bound.half_extent, box_view.eye, uint(gl_VertexIndex));
-    gl_Position = view.clip_from_relative * vec4(corner, 1.0);
+    gl_Position = clip_from_grown_corner(bounds.items[object], views.items[0], uint(gl_VertexIndex));
 }
