@@ -15,7 +15,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
     OptionInfo {
         name: "ranges",
-        default: "4",
+        default: "6",
         values: "1..=8",
         help: "depth ranges; 1 draws what roc draws",
     },

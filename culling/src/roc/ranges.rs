@@ -45,7 +45,8 @@ struct Kind {
 }
 
 /// Two draw lists a depth range: what the last frame saw in it, and all others in view, whose commands draw nothing until
-/// their boxes are found open. Each has room for every object of the world, so that it cannot overflow.
+/// their boxes are found open. Each has room for every object of the world, so that it cannot overflow: 40 bytes an object and
+/// range, of which a device that binds 128 MiB at once takes a million objects in six ranges.
 pub struct RangeLists {
     cuts: Cuts,
     selected: Buffer<u32>,
