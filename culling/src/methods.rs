@@ -54,6 +54,14 @@ pub const METHODS: &[Entry] = &[
         make: roc::make,
     },
     Entry {
+        id: "roc-iterative",
+        title: "raster occlusion culling by depth ranges, near to far",
+        source: "EOVC thesis, II.2 and its reference 23",
+        guarantee: Guarantee::Exact,
+        options: roc::iterative::OPTIONS,
+        make: roc::iterative::make,
+    },
+    Entry {
         id: "eovc",
         title: "ray-cast occludee groups",
         source: "EOVC thesis, III",

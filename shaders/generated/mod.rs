@@ -40,7 +40,11 @@ pub const STAGES: &[&StageInfo] = &[
     <pack::WriteCommands as Stage>::INFO,
     <pack::WriteIndices as Stage>::INFO,
     <pack::WriteInstances as Stage>::INFO,
+    <roc::AssignRanges as Stage>::INFO,
+    <roc::ListRanges as Stage>::INFO,
+    <roc::MeasureBoxes as Stage>::INFO,
     <roc::SelectBoxes as Stage>::INFO,
     <roc::TestBoxes as Stage>::INFO,
+    <roc::TestRange as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

@@ -59,14 +59,14 @@ const _: () = {
     assert!(size_of::<CountFlagsPush>() == 8);
 };
 
-/// Where does each chunk's first command go? One subgroup walks the chunk counts in strides and writes
-/// their exclusive prefix sum, then the total. Deliberately one subgroup: it needs no barrier and no look-back (both fail or
-/// cost 20 times more on a CPU device), and with PACK_CHUNK objects a chunk it is 19,532 strides at 10^7 objects and 8
-/// lanes, far under the 65,535 iterations after which lavapipe ends a loop without a word. Second of three steps of the
-/// ordered packing. Twin: culling/src/pack/twin.rs.
+/// Where does each chunk's first command go? One subgroup walks a list's chunk counts in strides and writes
+/// their exclusive prefix sum, then the total; each work group does one list. Deliberately one subgroup a list: it needs no
+/// barrier and no look-back (both fail or cost 20 times more on a CPU device), and with PACK_CHUNK objects a chunk it is 19,532
+/// strides at 10^7 objects and 8 lanes, far under the 65,535 iterations after which lavapipe ends a loop without a word. Second
+/// of three steps of the ordered packing. Twin: culling/src/pack/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct ScanCounts {
-    /// `counts` in GLSL.
+    /// By list and chunk; totals by list.
     pub counts: BufferRef<u32>,
     /// `starts` in GLSL.
     pub starts: BufferRef<u32>,

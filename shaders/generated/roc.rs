@@ -5,6 +5,295 @@
 use super::types;
 use crate::contract::*;
 
+/// Which depth range does each object belong to, and how many objects of each chunk does each range's list
+/// hold? The last range ends at `outermost`; each range before ends at `share` of the next one's end. Second of three steps
+/// that sort objects into depth ranges (EOVC thesis II.2, iterative occlusion culling). Twin: culling/src/roc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct AssignRanges {
+    /// `selected` in GLSL.
+    pub selected: BufferRef<u32>,
+    /// `depths` in GLSL.
+    pub depths: BufferRef<f32>,
+    /// The bits of a float, as roc/measure_boxes leaves them.
+    pub farthest: BufferRef<u32>,
+    /// The range of each object, and its selection in the lowest bits.
+    pub places: BufferRef<u32>,
+    /// By list and chunk. First the lists of what was seen, by range, then those of all others.
+    pub counts: BufferRef<u32>,
+    /// `first_object` in GLSL.
+    pub first_object: u32,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+    /// `range_count` in GLSL.
+    pub range_count: u32,
+    /// `outermost` in GLSL.
+    pub outermost: f32,
+    /// `share` in GLSL.
+    pub share: f32,
+    /// Specialization constants.
+    pub constants: AssignRangesConstants,
+}
+
+impl Stage for AssignRanges {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "roc/assign_ranges",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/roc/assign_ranges.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "selected", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "depths", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "farthest", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "places", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "counts", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 20,
+        constants: &[ConstantInfo { name: "SHOW_BEYOND", id: 0 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = AssignRangesPush {
+            first_object: self.first_object,
+            object_count: self.object_count,
+            range_count: self.range_count,
+            outermost: self.outermost,
+            share: self.share,
+        };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.selected.into(),
+                self.depths.into(),
+                self.farthest.into(),
+                self.places.into(),
+                self.counts.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.show_beyond)],
+        )
+    }
+}
+
+impl ComputeStage for AssignRanges {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct AssignRangesPush {
+    first_object: u32,
+    object_count: u32,
+    range_count: u32,
+    outermost: f32,
+    share: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(AssignRangesPush, first_object) == 0);
+    assert!(std::mem::offset_of!(AssignRangesPush, object_count) == 4);
+    assert!(std::mem::offset_of!(AssignRangesPush, range_count) == 8);
+    assert!(std::mem::offset_of!(AssignRangesPush, outermost) == 12);
+    assert!(std::mem::offset_of!(AssignRangesPush, share) == 16);
+    assert!(size_of::<AssignRangesPush>() == 20);
+};
+
+/// Specialization constants of [`AssignRanges`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AssignRangesConstants {
+    /// What begins past the last range is drawn without a test (the thesis); otherwise it belongs to the last range.
+    pub show_beyond: bool,
+}
+
+impl Default for AssignRangesConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { show_beyond: false }
+    }
+}
+
+/// The commands of each depth range, in object order: what was seen and is drawn first, and all others, which
+/// draw nothing (no instance) until their box is found open. Last of three steps that sort objects into depth ranges (EOVC
+/// thesis II.2, iterative occlusion culling). Twin: culling/src/roc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct ListRanges {
+    /// `places` in GLSL.
+    pub places: BufferRef<u32>,
+    /// By list and chunk, as roc/assign_ranges counts them.
+    pub starts: BufferRef<u32>,
+    /// By list.
+    pub totals: BufferRef<u32>,
+    /// `object_meshes` in GLSL.
+    pub object_meshes: BufferRef<u32>,
+    /// `meshes` in GLSL.
+    pub meshes: BufferRef<types::MeshRange>,
+    /// Each range has room for all objects.
+    pub early: BufferRef<types::DrawCommand>,
+    /// `late` in GLSL.
+    pub late: BufferRef<types::DrawCommand>,
+    /// By range, then by kind of primitive: the draw of the boxes, one instance a command of `late`.
+    pub boxes: BufferRef<types::DrawCommand>,
+    /// `first_object` in GLSL.
+    pub first_object: u32,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+    /// `range_count` in GLSL.
+    pub range_count: u32,
+    /// `room` in GLSL.
+    pub room: u32,
+    /// `kind` in GLSL.
+    pub kind: u32,
+    /// `kind_count` in GLSL.
+    pub kind_count: u32,
+}
+
+impl Stage for ListRanges {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "roc/list_ranges",
+        modules: &[ShaderModule { kind: ShaderKind::Compute, spirv: include_bytes!("spirv/roc/list_ranges.comp.spv") }],
+        bindings: &[
+            BindingInfo { name: "places", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "starts", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "totals", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "object_meshes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "meshes", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "early", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "late", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "boxes", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 24,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ListRangesPush {
+            first_object: self.first_object,
+            object_count: self.object_count,
+            range_count: self.range_count,
+            room: self.room,
+            kind: self.kind,
+            kind_count: self.kind_count,
+        };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.places.into(),
+                self.starts.into(),
+                self.totals.into(),
+                self.object_meshes.into(),
+                self.meshes.into(),
+                self.early.into(),
+                self.late.into(),
+                self.boxes.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for ListRanges {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ListRangesPush {
+    first_object: u32,
+    object_count: u32,
+    range_count: u32,
+    room: u32,
+    kind: u32,
+    kind_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ListRangesPush, first_object) == 0);
+    assert!(std::mem::offset_of!(ListRangesPush, object_count) == 4);
+    assert!(std::mem::offset_of!(ListRangesPush, range_count) == 8);
+    assert!(std::mem::offset_of!(ListRangesPush, room) == 12);
+    assert!(std::mem::offset_of!(ListRangesPush, kind) == 16);
+    assert!(std::mem::offset_of!(ListRangesPush, kind_count) == 20);
+    assert!(size_of::<ListRangesPush>() == 24);
+};
+
+/// What becomes of each object, how far from the eye its box begins, and how far the farthest of those in
+/// view does. First of three steps that sort objects into depth ranges (EOVC thesis II.2, iterative occlusion culling).
+/// Twin: culling/src/roc/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct MeasureBoxes {
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// What the last frame saw.
+    pub seen: BufferRef<u32>,
+    /// SELECT_\* of each object.
+    pub selected: BufferRef<u32>,
+    /// Metres, from 0 on.
+    pub depths: BufferRef<f32>,
+    /// The bits of the largest depth: floats from 0 on have the order of their bits. Must be 0 before.
+    pub farthest: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `depth_plane` in GLSL.
+    pub depth_plane: [f32; 4],
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+}
+
+impl Stage for MeasureBoxes {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "roc/measure_boxes",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/roc/measure_boxes.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "seen", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "selected", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "depths", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "farthest", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 120,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MeasureBoxesPush { view: self.view, depth_plane: self.depth_plane, object_count: self.object_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.bounds.into(), self.seen.into(), self.selected.into(), self.depths.into(), self.farthest.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for MeasureBoxes {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MeasureBoxesPush {
+    view: types::CullView,
+    depth_plane: [f32; 4],
+    object_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MeasureBoxesPush, view) == 0);
+    assert!(std::mem::offset_of!(MeasureBoxesPush, depth_plane) == 100);
+    assert!(std::mem::offset_of!(MeasureBoxesPush, object_count) == 116);
+    assert!(size_of::<MeasureBoxesPush>() == 120);
+};
+
 /// Which objects must prove by their box that they are hidden? All in the view volume that were not drawn
 /// first. A box that reaches the near plane cannot be rasterised: its object counts as visible (EOVC thesis II.2, ROC;
 /// Kubisch & Tavenrath 2014). Twin: culling/src/roc/twin.rs.
@@ -119,3 +408,55 @@ impl Stage for TestBoxes {
 }
 
 impl GraphicsStage for TestBoxes {}
+
+/// The boxes of a depth range's objects that were not drawn yet, against the depth of all that was, nearer
+/// ranges included. No colour, no depth is written (EOVC thesis II.2, iterative occlusion culling).
+///
+/// A fragment of a box is open, so what is in the box may show: its command gets an instance.
+#[derive(Clone, Copy, Debug)]
+pub struct TestRange {
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// A command of each object, of which only the object is read; the same buffer as `late`.
+    pub commands: BufferRef<types::DrawCommand>,
+    /// `places` in GLSL.
+    pub places: BufferRef<u32>,
+    /// `views` in GLSL.
+    pub views: BufferRef<types::BoxView>,
+    /// `late` in GLSL.
+    pub late: BufferRef<types::DrawCommand>,
+}
+
+impl Stage for TestRange {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "roc/test_range",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/roc/test_range.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/roc/test_range.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "commands", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "places", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "views", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "late", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 0,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        BoundStage::new(
+            Self::INFO,
+            vec![self.bounds.into(), self.commands.into(), self.places.into(), self.views.into(), self.late.into()],
+            &[],
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for TestRange {}

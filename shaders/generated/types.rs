@@ -29,6 +29,27 @@ pub const REDUCED_LEVELS: u32 = 3;
 /// The far plane: reversed depth.
 pub const DEPTH_FAR: f32 = 0.0;
 
+/// Out of view: nothing.
+pub const SELECT_NONE: u32 = 0;
+
+/// The last frame saw it: drawn first.
+pub const SELECT_SEEN: u32 = 1;
+
+/// Its box is tested, and decides.
+pub const SELECT_TESTED: u32 = 2;
+
+/// Drawn without a test.
+pub const SELECT_SHOWN: u32 = 3;
+
+/// At most so many depth ranges.
+pub const MOST_RANGES: u32 = 8;
+
+/// In a word of `places`, the lowest bits hold the selection and the others the depth range.
+pub const PLACE_RANGE_SHIFT: u32 = 2;
+
+/// `PLACE_SELECTION_MASK` in GLSL.
+pub const PLACE_SELECTION_MASK: u32 = 3;
+
 /// Objects whose raster footprint is wider than their geometry: lines and points cover a pixel around them.
 pub const OBJECT_WIDE_RASTER: u32 = 1;
 

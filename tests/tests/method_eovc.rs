@@ -90,6 +90,7 @@ fn a_read_back_shows_and_counts_exactly() {
         assert_eq!(take.report.draws.iter().map(|draw| draw.max_draws).sum::<u32>() as usize, take.commands.len());
         assert!(take.commands.iter().all(|command| command.instance_count == 1));
     }
+}
 
 #[test]
 fn what_a_wall_hides_is_culled() {

@@ -19,9 +19,11 @@ fn number(variable: &str, default: u64) -> u64 {
 /// `eovc` in one of its many ways, by seed.
 fn eovc(seed: u64, coherent: &str) -> Subject {
     let mut random = Random::new(seed ^ 0x0ddc_0ffe);
-    let pixels = ["1", "4", "16", "300", "67108864"][random.below(5)];
     let bvh = ["sah", "middle", "equal"][random.below(3)];
-    Subject::named("eovc").with("coherent", coherent).with("pixels", pixels).with("bvh", bvh)
+    let commands = ["packed", "zero-instance"][random.below(2)];
+    let [of, cr] = [(); 2].map(|()| ["false", "true"][random.below(2)]);
+    let subject = Subject::named("eovc").with("coherent", coherent).with("bvh", bvh);
+    subject.with("commands", commands).with("of", of).with("cr", cr)
 }
 
 /// The faults of a world, with what was lost, and where.
@@ -75,6 +77,11 @@ fn coherent_eovc_loses_nothing() {
 #[test]
 fn roc_loses_nothing() {
     stress("roc", |_| Subject::named("roc"));
+}
+
+#[test]
+fn roc_iterative_loses_nothing() {
+    stress("roc_iterative", |_| Subject::named("roc-iterative"));
 }
 
 #[test]

@@ -15,13 +15,57 @@ use shaders::{pack, BufferRef, Stage};
 /// Corners of the three near faces, as triangles.
 const NEAR_FACES: [u32; 18] = [0, 2, 6, 0, 6, 4, 0, 1, 5, 0, 5, 4, 0, 1, 3, 0, 3, 2];
 
+/// What boxes are drawn with: the corners of one box, and the frame's view.
+pub struct BoxShape {
+    corners: Buffer<u32>,
+    view: Buffer<BoxView>,
+    draws: Buffer<u32>,
+}
+
+impl BoxShape {
+    /// For multi-draws of `draws` commands, each of instances of one box.
+    pub fn new(gpu: &Gpu, name: &str, draws: u32) -> Result<Self> {
+        Ok(BoxShape {
+            corners: Buffer::with_data(gpu, "boxes.corners", &NEAR_FACES, Placement::Geometry)?,
+            view: Buffer::new(gpu, &format!("{name}.view"), 1, Placement::Upload)?,
+            draws: Buffer::with_data(gpu, "boxes.draws", &[draws], Placement::Storage)?,
+        })
+    }
+
+    /// The command of a draw without boxes, the first of which is instance `first_instance`.
+    pub fn no_boxes(first_instance: u32) -> DrawCommand {
+        DrawCommand { index_count: NEAR_FACES.len() as u32, first_instance, ..DrawCommand::default() }
+    }
+
+    /// Gives the boxes' shaders the frame's view.
+    pub fn look(&mut self, view: &View) -> Result<()> {
+        Ok(self.view.write(&[box_view(view)])?)
+    }
+
+    /// The frame's view.
+    pub fn view(&self) -> BufferRef<BoxView> {
+        self.view.all()
+    }
+
+    /// The multi-draw of the first commands of a range.
+    pub fn draw(&self, commands: BufferRef<DrawCommand>, draws: u32) -> IndexedIndirect {
+        IndexedIndirect {
+            vertices: self.corners.all().into(),
+            indices: self.corners.all().into(),
+            commands: commands.into(),
+            // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).
+            count: Some(self.draws.all()),
+            max_draws: draws,
+            primitives: Primitives::Triangles,
+        }
+    }
+}
+
 /// A list of things with boxes, drawn as instances of one box.
 pub struct BoxList {
     listed: Buffer<u32>,
     command: Buffer<DrawCommand>,
-    one_draw: Buffer<u32>,
-    corners: Buffer<u32>,
-    view: Buffer<BoxView>,
+    shape: BoxShape,
     counts: Buffer<u32>,
     starts: Buffer<u32>,
     total: Buffer<u32>,
@@ -35,13 +79,10 @@ impl BoxList {
     pub fn new(gpu: &Gpu, name: &str, len: usize) -> Result<Self> {
         let chunks = len.div_ceil(PACK_CHUNK as usize);
         let storage = Placement::Storage;
-        let command = DrawCommand { index_count: NEAR_FACES.len() as u32, ..DrawCommand::default() };
         Ok(BoxList {
             listed: Buffer::new(gpu, &format!("{name}.listed"), len, storage)?,
-            command: Buffer::with_data(gpu, &format!("{name}.command"), &[command], storage)?,
-            one_draw: Buffer::with_data(gpu, "boxes.one_draw", &[1], storage)?,
-            corners: Buffer::with_data(gpu, "boxes.corners", &NEAR_FACES, Placement::Geometry)?,
-            view: Buffer::new(gpu, &format!("{name}.view"), 1, Placement::Upload)?,
+            command: Buffer::with_data(gpu, &format!("{name}.command"), &[BoxShape::no_boxes(0)], storage)?,
+            shape: BoxShape::new(gpu, name, 1)?,
             counts: Buffer::new(gpu, &format!("{name}.counts"), chunks, storage)?,
             starts: Buffer::new(gpu, &format!("{name}.starts"), chunks, storage)?,
             total: Buffer::new(gpu, &format!("{name}.total"), 1, storage)?,
@@ -52,7 +93,7 @@ impl BoxList {
 
     /// Gives the boxes' shaders the frame's view.
     pub fn look(&mut self, view: &View) -> Result<()> {
-        Ok(self.view.write(&[box_view(view)])?)
+        self.shape.look(view)
     }
 
     /// Lists every object whose flag is not 0, in order.
@@ -81,8 +122,7 @@ impl BoxList {
 
     /// What [`BoxList::clear`] copies from.
     pub fn empty_command(gpu: &Gpu) -> Result<Buffer<DrawCommand>> {
-        let command = DrawCommand { index_count: NEAR_FACES.len() as u32, ..DrawCommand::default() };
-        Ok(Buffer::with_data(gpu, "boxes.empty", &[command], Placement::Storage)?)
+        Ok(Buffer::with_data(gpu, "boxes.empty", &[BoxShape::no_boxes(0)], Placement::Storage)?)
     }
 
     /// What is listed.
@@ -97,7 +137,7 @@ impl BoxList {
 
     /// The frame's view.
     pub fn view(&self) -> BufferRef<BoxView> {
-        self.view.all()
+        self.shape.view()
     }
 
     /// A list for frames that read counters back: its draw has no count on the GPU, as draws with and without one must not be
@@ -113,15 +153,8 @@ impl BoxList {
 
     /// The instanced draw of all boxes.
     pub fn draw(&self) -> IndexedIndirect {
-        IndexedIndirect {
-            vertices: self.corners.all().into(),
-            indices: self.corners.all().into(),
-            commands: self.command.all().into(),
-            // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).
-            count: if self.without_count { None } else { Some(self.one_draw.all()) },
-            max_draws: 1,
-            primitives: Primitives::Triangles,
-        }
+        let draw = self.shape.draw(self.command.all(), 1);
+        IndexedIndirect { count: draw.count.filter(|_| !self.without_count), ..draw }
     }
 
     /// How many boxes the last frame listed.

@@ -2,7 +2,7 @@
 
 use super::Tree;
 use crate::boxes::BoxList;
-use crate::{Result, Setup, View, World};
+use crate::{Result, Setup, View};
 use engine::{Buffer, Frame, Placement};
 use shaders::types::{DrawCommand, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS};
 use shaders::{eovc, BufferRef};
@@ -55,7 +55,6 @@ impl Groups {
     pub fn extract(
         &self,
         f: &mut Frame,
-        world: &World,
         tree: &Tree,
         occluders: BufferRef<u32>,
         hits: BufferRef<u32>,
@@ -63,7 +62,7 @@ impl Groups {
         frame: u32,
     ) {
         let (nodes, marked, visible, grids) = (tree.nodes(), self.marked.all(), self.visible.all(), self.grids.all());
-        let object_count = world.len() as u32;
+        let object_count = tree.unbounded().len() as u32;
         f.copy("eovc/clear_lists", self.no_grids.all(), grids);
         self.groups.clear(f, "eovc/clear_groups", &self.no_boxes);
         self.singles.clear(f, "eovc/clear_groups", &self.no_boxes);

@@ -98,7 +98,7 @@ impl Method for Eovc {
         self.now = 1 - self.now;
         self.frame += 1;
         self.map_occluders(f, world, view, target)?; // 1. occlusion mapping
-        self.extract_groups(f, world, view); // 2. occludee group extraction
+        self.extract_groups(f, view); // 2. occludee group extraction
         self.query_groups(f, target)?; // 3. batch occlusion query
         self.render_occludees(f, world, view, target)?; // 4. occludee rendering
         self.choose_occluders(f, target) // 5. the next frame's occluders
@@ -153,7 +153,7 @@ impl Eovc {
     }
 
     /// Climbs from each effective occluder to the root; what lies beside the way is a group (III.3).
-    fn extract_groups(&self, f: &mut Frame, world: &World, view: &View) {
+    fn extract_groups(&self, f: &mut Frame, view: &View) {
         f.part("groups");
         f.copy("eovc/clear_hits", self.unbounded.all(), self.hits.all());
         if self.tree.is_empty() {
@@ -161,7 +161,7 @@ impl Eovc {
             return;
         }
         let effective = if self.filters() { &self.visible[1 - self.now] } else { &self.visible[self.now] };
-        self.groups.extract(f, world, &self.tree, effective.all(), self.hits.all(), view, self.frame);
+        self.groups.extract(f, &self.tree, effective.all(), self.hits.all(), view, self.frame);
     }
 
     /// Rasterises the groups' boxes against the occluders' depth; a ray from each open pixel flags what it meets (III.4).

@@ -7,7 +7,7 @@ pub fn count_flags(flags: &[u32]) -> Vec<u32> {
     flags.chunks(PACK_CHUNK as usize).map(|chunk| chunk.iter().filter(|flag| **flag != 0).count() as u32).collect()
 }
 
-/// Where each chunk's first command goes, and how many commands there are. Twin of `pack/scan_counts`.
+/// Where each chunk's first command goes, and how many commands there are. Twin of `pack/scan_counts`, for one list.
 pub fn scan_counts(counts: &[u32]) -> (Vec<u32>, u32) {
     let mut total = 0;
     let mut starts = Vec::with_capacity(counts.len());

@@ -1,7 +1,12 @@
 //! `roc`: raster occlusion culling (EOVC thesis II.2; Kubisch & Tavenrath 2014). The last frame's visible objects are drawn
-//! first; the boxes of all others in the view volume are rasterised against their depth; what shows is drawn.
+//! first; the boxes of all others in the view volume are rasterised against their depth; what shows is drawn. [`iterative`] does
+//! so by depth ranges.
 
+pub mod iterative;
+mod ranges;
 pub mod twin;
+
+pub use ranges::{depth_plane, Cuts, RangeLists};
 
 use crate::boxes::BoxList;
 use crate::pack::DrawList;

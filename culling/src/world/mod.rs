@@ -184,13 +184,8 @@ impl World {
     /// Draws what a list holds, and sets the flag of each object of which a fragment passes the early tests: colour, depth
     /// and visibility in one pass (EOVC thesis III.2).
     pub fn draw_flagged(&self, f: &mut Frame, list: &DrawList, visible: BufferRef<u32>, view: &View, target: &Target) {
-        let (objects, view) = (self.objects.all(), view.gpu());
         for draw in list.draws(self) {
-            if target.item.is_some() {
-                f.draw(draw::ObjectsItemsAndFlags { objects, visible, view }, draw, target);
-            } else {
-                f.draw(draw::ObjectsAndFlags { objects, visible, view }, draw, target);
-            }
+            self.draw_indirect_flagged(f, draw, visible, view, target);
         }
     }
 
@@ -233,6 +228,22 @@ impl World {
             f.draw(draw::ObjectsAndItems { objects, view: view.gpu() }, draw, target);
         } else {
             f.draw(draw::Objects { objects, view: view.gpu() }, draw, target);
+        }
+    }
+
+    pub(crate) fn draw_indirect_flagged(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        visible: BufferRef<u32>,
+        view: &View,
+        target: &Target,
+    ) {
+        let (objects, view) = (self.objects.all(), view.gpu());
+        if target.item.is_some() {
+            f.draw(draw::ObjectsItemsAndFlags { objects, visible, view }, draw, target);
+        } else {
+            f.draw(draw::ObjectsAndFlags { objects, visible, view }, draw, target);
         }
     }
 

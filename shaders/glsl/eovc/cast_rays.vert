@@ -20,5 +20,5 @@ void main() {
     ClipBox box = clip_from_bounds(bound, box_view.view);
     float w_min = box.centre.w - abs(box.axis_x.w) - abs(box.axis_y.w) - abs(box.axis_z.w) - box.error.w;
     nearest = min(farthest_along(box, vec4(0.0, 0.0, 1.0, 0.0)) / max(w_min, 1.0e-30), 1.0);
-    gl_Position = clip_from_near_corner(bound, box_view, gl_VertexIndex);
+    gl_Position = clip_from_near_corner(bound, box_view, uint(gl_VertexIndex));
 }

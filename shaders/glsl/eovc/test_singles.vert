@@ -16,6 +16,5 @@ invariant gl_Position;
 void main() {
     node = singles.items[gl_InstanceIndex];
     object = nodes.items[node].first_child;
-    BoxView box_view = views.items[0];
-    gl_Position = clip_from_near_corner(grown(nodes.items[node].bounds, box_view.view), box_view, gl_VertexIndex);
+    gl_Position = clip_from_grown_corner(nodes.items[node].bounds, views.items[0], uint(gl_VertexIndex));
 }

@@ -67,10 +67,15 @@ vec3 near_faces_corner(vec3 centre, vec3 half_extent, vec4 eye, uint corner) {
     return centre + half_extent * towards * (1.0 - 2.0 * away);
 }
 
-// The clip position of a corner (gl_VertexIndex) of the near faces of a box that has been grown.
-vec4 clip_from_near_corner(Bounds bound, BoxView box_view, int corner) {
+// The clip position of such a corner of a box that has been grown.
+vec4 clip_from_near_corner(Bounds bound, BoxView box_view, uint corner) {
     CullView view = box_view.view;
     vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, view.camera_high, view.camera_low);
-    return view.clip_from_relative * vec4(near_faces_corner(centre, bound.half_extent, box_view.eye, uint(corner)), 1.0);
+    return view.clip_from_relative * vec4(near_faces_corner(centre, bound.half_extent, box_view.eye, corner), 1.0);
+}
+
+// The clip position of such a corner of the grown box.
+vec4 clip_from_grown_corner(Bounds bounds, BoxView box_view, uint corner) {
+    return clip_from_near_corner(grown(bounds, box_view.view), box_view, corner);
 }
 #endif

@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
-#include "box.glsl"
+#include "select.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
@@ -16,18 +16,7 @@ layout(push_constant, scalar) uniform Push { CullView view; uint object_count; }
 void main() {
     uint object = invocation_index();
     if (object >= push.object_count) return;
-    uint box = 0u;
-    uint shown = 0u;
-    if (drawn.items[object] == 0u) {
-        Bounds bound = bounds.items[object];
-        if ((bound.flags & OBJECT_ALWAYS_KEPT) != 0u) {
-            shown = 1u;
-        } else if (!outside_frustum(clip_from_bounds(bound, push.view), footprint_widening(bound.flags, push.view))) {
-            bool reaches_near = crosses_near(clip_from_bounds(grown(bound, push.view), push.view));
-            shown = reaches_near ? 1u : 0u;
-            box = reaches_near ? 0u : 1u;
-        }
-    }
-    boxes.items[object] = box;
-    newly.items[object] = shown;
+    uint selected = selection(bounds.items[object], drawn.items[object] != 0u, push.view);
+    boxes.items[object] = selected == SELECT_TESTED ? 1u : 0u;
+    newly.items[object] = selected == SELECT_SHOWN ? 1u : 0u;
 }

@@ -14,6 +14,5 @@ invariant gl_Position;
 
 void main() {
     object = listed.items[gl_InstanceIndex];
-    BoxView box_view = views.items[0];
-    gl_Position = clip_from_near_corner(grown(bounds.items[object], box_view.view), box_view, gl_VertexIndex);
+    gl_Position = clip_from_grown_corner(bounds.items[object], views.items[0], uint(gl_VertexIndex));
 }

@@ -7,7 +7,7 @@ use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use scenes::bvh::{Split, NO_NODE};
 use shaders::eovc;
-use shaders::types::{BoxView, DrawCommand, TreeNode};
+use shaders::types::{BoxView, DrawCommand, TreeNode, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS};
 
 /// What is wrong with the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,9 +56,14 @@ struct Broken {
     unbounded: Buffer<u32>,
     newly: Buffer<u32>,
     counters: Buffer<u32>,
-    tested: Buffer<u32>,
     touched: Buffer<u32>,
+    marked_nodes: Buffer<u32>,
+    starts: [Buffer<u32>; 2],
+    grids: Buffer<u32>,
+    no_grids: Buffer<u32>,
     no_groups: Buffer<DrawCommand>,
+    open_groups: Buffer<u32>,
+    open_boxes: BoxList,
     groups: Listed,
     singles: Listed,
     views: Buffer<BoxView>,
@@ -76,6 +81,8 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
         Ok(Listed { boxes: BoxList::new(gpu, name, len)?, shortened: BoxList::empty_command(gpu)? })
     };
     let mut shrunk = tree.read_nodes()?;
+    let mut no_grids = [0, 1, 1, 0].repeat(24);
+    no_grids[0] = 1;
     shrunk.iter_mut().for_each(|node| node.bounds.half_extent = node.bounds.half_extent.map(|half| 0.5 * half));
     Ok(Box::new(Broken {
         defect,
@@ -87,8 +94,13 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
         hits: objects("broken.hits")?,
         unbounded: Buffer::with_data(gpu, "broken.unbounded", tree.unbounded(), Placement::Storage)?,
         newly: objects("broken.newly")?,
-        counters: Buffer::new(gpu, "broken.counters", 2, Placement::Storage)?,
-        tested: nodes("broken.tested")?,
+        counters: Buffer::new(gpu, "broken.counters", 3, Placement::Storage)?,
+        marked_nodes: nodes("broken.marked_nodes")?,
+        starts: [nodes("broken.starts_even")?, nodes("broken.starts_odd")?],
+        grids: Buffer::new(gpu, "broken.grids", no_grids.len(), Placement::Storage)?,
+        no_grids: Buffer::with_data(gpu, "broken.no_grids", &no_grids, Placement::Storage)?,
+        open_groups: nodes("broken.open_groups")?,
+        open_boxes: BoxList::new(gpu, "broken.open_boxes", 0)?,
         touched: nodes("broken.touched")?,
         no_groups: BoxList::empty_command(gpu)?,
         groups: listed("broken.groups", tree.len())?,
@@ -140,18 +152,23 @@ impl Broken {
     }
 
     fn clear(&self, f: &mut Frame) {
-        let first = self.frame == 3;
-        if self.defect != Defect::MarksNotCleared || first {
-            f.fill("eovc/clear_marks", &self.marked, 0);
-        }
-        match self.defect {
-            Defect::FullFromTheStart => f.fill("eovc/clear_full", &self.full, 1),
-            Defect::FullNotCleared if !first => (),
-            _ => f.fill("eovc/clear_full", &self.full, 0),
+        if self.defect == Defect::FullFromTheStart {
+            f.fill("broken/fill_full", &self.full, self.frame);
         }
         f.copy("eovc/clear_hits", self.unbounded.all(), self.hits.all());
+        f.copy("eovc/clear_lists", self.no_grids.all(), self.grids.all());
         self.groups.boxes.clear(f, "eovc/clear_groups", &self.no_groups);
         self.singles.boxes.clear(f, "eovc/clear_groups", &self.no_groups);
+        self.open_boxes.clear(f, "eovc/clear_open", &self.no_groups);
+    }
+
+    /// The frame's number as marks have it.
+    fn mark_of_frame(&self) -> u32 {
+        if self.defect == Defect::MarksNotCleared {
+            3
+        } else {
+            self.frame
+        }
     }
 
     fn mark(&mut self, f: &mut Frame, world: &World) -> culling::Result<()> {
@@ -160,17 +177,20 @@ impl Broken {
             leaves: self.tree.leaves(),
             nodes: self.tree.nodes(),
             marked: self.marked.all(),
+            visible: self.marked_nodes.all(),
+            grids: self.grids.all(),
             object_count: world.len() as u32,
+            frame: self.mark_of_frame(),
         };
         f.dispatch(mark, world.len() as u32);
         if self.defect == Defect::PathTooWide {
-            let parents = self.tree.host().parents();
+            let (parents, frame) = (self.tree.host().parents(), self.frame);
             edit(f, &mut self.marked, |marked| {
                 let right = marked.to_vec();
-                // Parents come first, so what is below a sibling is marked too.
-                for node in 1..marked.len() {
-                    let parent = parents[node] as usize;
-                    marked[node] |= u32::from(right[node] == 0 && parents[node] != NO_NODE && marked[parent] != 0);
+                for node in (1..marked.len()).filter(|node| parents[*node] != NO_NODE) {
+                    if right[parents[node] as usize] == frame {
+                        marked[node] = frame;
+                    }
                 }
             })?;
         }
@@ -178,23 +198,36 @@ impl Broken {
     }
 
     fn extract(&mut self, f: &mut Frame, view: &View) -> culling::Result<()> {
+        let (nodes, grids) = (self.tree.nodes(), self.grids.all());
         let extract = eovc::ExtractGroups {
-            nodes: self.tree.nodes(),
+            nodes,
             marked: self.marked.all(),
-            groups: self.groups.boxes.listed(),
-            group_command: self.groups.boxes.command(),
-            singles: self.singles.boxes.listed(),
-            single_command: self.singles.boxes.command(),
-            hits: self.hits.all(),
-            view: view.cull(),
-            node_count: self.tree.len() as u32,
-            tested: self.tested.all(),
-            touched: self.touched.all(),
-            frame: self.frame,
-            most_pixels: 16,
-            constants: eovc::ExtractGroupsConstants { coherent: false },
+            visible: self.marked_nodes.all(),
+            groups: self.starts[0].all(),
+            grids,
+            frame: self.mark_of_frame(),
         };
-        f.dispatch(extract, self.tree.len() as u32);
+        f.dispatch_indirect(extract, grids);
+        for pass in 0..self.tree.depth() / CULL_LEVELS + 1 {
+            let list = FIRST_CULL_LIST + pass;
+            let cull = eovc::CullGroups {
+                nodes,
+                starts: self.starts[pass as usize % 2].all(),
+                unfinished: self.starts[1 - pass as usize % 2].all(),
+                grids,
+                groups: self.groups.boxes.listed(),
+                group_command: self.groups.boxes.command(),
+                singles: self.singles.boxes.listed(),
+                single_command: self.singles.boxes.command(),
+                hits: self.hits.all(),
+                touched: self.touched.all(),
+                view: view.cull(),
+                frame: self.frame,
+                list,
+                constants: eovc::CullGroupsConstants { coherent: false },
+            };
+            f.dispatch_indirect(cull, grids.from((list * GRID_WORDS) as usize));
+        }
         match self.defect {
             Defect::DroppedGroup => self.groups.drop_last(&self.gpu, f),
             Defect::DroppedSingle => self.singles.drop_last(&self.gpu, f),
@@ -227,15 +260,25 @@ impl Broken {
             nodes: shrunk_if(Defect::ShrunkGroups),
             groups: self.groups.boxes.listed(),
             views: self.views.all(),
+            touched: self.touched.all(),
+            open_groups: self.open_groups.all(),
+            open_command: self.open_boxes.command(),
+            frame: self.frame,
+        };
+        f.test_boxes(query, self.groups.boxes.draw(), &target.test_only());
+        let cast = eovc::CastRays {
+            nodes: shrunk_if(Defect::ShrunkGroups),
+            open_groups: self.open_groups.all(),
+            views: self.views.all(),
             full: self.full.all(),
             hits: self.hits.all(),
             counters: self.counters.all(),
             depth: target.depth,
             touched: self.touched.all(),
-            frame: self.frame,
-            constants: eovc::QueryGroupsConstants::default(),
+            frame: if self.defect == Defect::FullNotCleared { 3 } else { self.frame },
+            constants: eovc::CastRaysConstants::default(),
         };
-        f.test_boxes(query, self.groups.boxes.draw(), &target.test_only());
+        f.test_boxes(cast, self.open_boxes.draw(), &target.test_only());
         let test = eovc::TestSingles {
             nodes: shrunk_if(Defect::ShrunkSingles),
             singles: self.singles.boxes.listed(),

@@ -1,16 +1,16 @@
 //! Occludee groups on the GPU against the thesis' words (`scenes::bvh::extract_groups`), node for node, on trees by chance.
 
+use super::trees::{culled_on_gpu, extracted_on_gpu, Stand};
+use culling::eovc::twin::Culled;
 use culling::eovc::Tree;
 use culling::{View, World};
-use engine::{Buffer, Gpu, Placement};
+use engine::Gpu;
 use glam::DVec3;
 use harness::{gpu, worlds};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use scenes::bvh::{Bvh, NodeState, Split, NO_NODE};
 use scenes::{Projection, Scene};
-use shaders::eovc;
-use shaders::types::DrawCommand;
 
 /// Objects, each a place and the share of chance that makes it an occluder, and how the tree is split.
 #[derive(Clone, Debug)]
@@ -50,53 +50,17 @@ fn scene(places: &[(DVec3, DVec3)]) -> Scene {
     maker.scene
 }
 
-/// What the GPU says: marks, nodes listed as groups, as single objects, and objects hit without a test.
-fn extracted(gpu: &Gpu, world: &World, tree: &Tree, occluders: &[bool]) -> [Vec<u32>; 4] {
-    let zeros = |len| Buffer::<u32>::new(gpu, "test", len, Placement::Storage).unwrap();
+/// What the GPU says: marks, nodes listed as groups, as single objects, and objects hit without a test. All of every box lies
+/// in the view volume, far from the near plane: nothing is dropped and nothing is opened.
+fn extracted(gpu: &Gpu, stand: &Stand, occluders: &[bool]) -> (Vec<u32>, Vec<u32>, Culled) {
+    if stand.tree.is_empty() {
+        return Default::default();
+    }
     let flags: Vec<u32> = occluders.iter().map(|occluder| u32::from(*occluder)).collect();
-    let flags = Buffer::with_data(gpu, "test", &flags, Placement::Storage).unwrap();
-    let [marked, groups, singles, tested, touched] = [(); 5].map(|()| zeros(tree.len()));
-    let hits = zeros(world.len());
-    let command = || Buffer::with_data(gpu, "test", &[DrawCommand::default()], Placement::Storage).unwrap();
-    let commands = [command(), command()];
-    // All of every box lies in the view volume, far from the near plane: nothing is dropped and nothing is opened.
-    let around = Projection::Orthographic { half_height: 200.0, near: 1.0, far: 1000.0 };
-    let shot = worlds::shot(DVec3::Z * 500.0, DVec3::ZERO, around);
-    let view = View::new(&shot, [64, 64], 0, gpu.snap_px()).cull();
-    let (object_count, node_count) = (world.len() as u32, tree.len() as u32);
-    let mut f = gpu.frame();
-    let (nodes, leaves) = (tree.nodes(), tree.leaves());
-    f.dispatch(
-        eovc::MarkPaths { occluders: flags.all(), leaves, nodes, marked: marked.all(), object_count },
-        object_count,
-    );
-    let extract = eovc::ExtractGroups {
-        nodes,
-        marked: marked.all(),
-        groups: groups.all(),
-        group_command: commands[0].all(),
-        singles: singles.all(),
-        single_command: commands[1].all(),
-        hits: hits.all(),
-        tested: tested.all(),
-        touched: touched.all(),
-        view,
-        node_count,
-        frame: 3,
-        most_pixels: 16,
-        constants: eovc::ExtractGroupsConstants { coherent: false },
-    };
-    f.dispatch(extract, node_count);
-    f.finish().unwrap();
-    let listed = |list: &Buffer<u32>, command: &Buffer<DrawCommand>| {
-        let count = command.read().unwrap()[0].instance_count as usize;
-        let mut nodes = list.read().unwrap()[..count].to_vec();
-        nodes.sort_unstable();
-        nodes
-    };
-    let hits = hits.read().unwrap();
-    let hit = (0..hits.len() as u32).filter(|object| hits[*object as usize] != 0).collect();
-    [marked.read().unwrap(), listed(&groups, &commands[0]), listed(&singles, &commands[1]), hit]
+    let (marked, groups) = extracted_on_gpu(gpu, stand, &flags);
+    // As if there were an occluder even where there is none: else all would be opened.
+    let culled = culled_on_gpu(gpu, stand, &groups, false, None);
+    (marked, groups, culled)
 }
 
 /// How many of the nodes listed lie on the way from a leaf to the root, itself included.
@@ -109,9 +73,13 @@ fn groups_above(bvh: &Bvh, leaf: u32, listed: &[u32]) -> usize {
 fn check(gpu: &Gpu, sample: &Sample) -> Result<(), TestCaseError> {
     let world = World::new(gpu, &scene(&sample.places)).unwrap();
     let tree = Tree::new(gpu, &world, sample.split).unwrap();
-    let bvh = tree.host();
     prop_assert_eq!(tree.len(), (2 * world.len()).saturating_sub(1));
-    let [marked, groups, singles, hit] = extracted(gpu, &world, &tree, &sample.occluders);
+    let around = Projection::Orthographic { half_height: 200.0, near: 1.0, far: 1000.0 };
+    let view = View::new(&worlds::shot(DVec3::Z * 500.0, DVec3::ZERO, around), [64, 64], 0, gpu.snap_px());
+    let nodes = tree.read_nodes().unwrap();
+    let stand = Stand { world, tree, view, nodes };
+    let bvh = stand.tree.host();
+    let (marked, extracted_groups, Culled { groups, singles, hits }) = extracted(gpu, &stand, &sample.occluders);
     let states = scenes::bvh::extract_groups(bvh, &sample.occluders);
     let is = |state: NodeState, leaf: bool| {
         let nodes = (0..states.len()).filter(|node| states[*node] == state && bvh.nodes()[*node].is_leaf() == leaf);
@@ -121,9 +89,10 @@ fn check(gpu: &Gpu, sample: &Sample) -> Result<(), TestCaseError> {
     prop_assert_eq!(&marked, &visible, "paths");
     prop_assert_eq!(&groups, &is(NodeState::Group, false), "groups of several objects");
     prop_assert_eq!(&singles, &is(NodeState::Group, true), "groups of one object");
-    prop_assert!(hit.is_empty(), "nothing reaches the near plane, but these were hit: {hit:?}");
+    prop_assert!(hits.is_empty(), "nothing reaches the near plane, but these were hit: {hits:?}");
     let mut all = [groups, singles].concat();
     all.sort_unstable();
+    prop_assert_eq!(&extracted_groups, &all, "every group is in the view volume, and none is opened");
     for (object, leaf) in bvh.leaf_of_object().iter().enumerate() {
         let expected = usize::from(!sample.occluders[object]);
         prop_assert_eq!(groups_above(bvh, *leaf, &all), expected, "object {} is in so many groups", object);

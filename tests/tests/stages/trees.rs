@@ -23,11 +23,12 @@ fn flags(random: &mut Random, len: usize, rarity: usize) -> Vec<u32> {
     (0..len).map(|_| u32::from(rarity > 0 && random.below(rarity) == 0)).collect()
 }
 
-struct Stand {
-    world: World,
-    tree: Tree,
-    view: View,
-    nodes: Vec<TreeNode>,
+/// A world with its hierarchy, and a look at it.
+pub struct Stand {
+    pub world: World,
+    pub tree: Tree,
+    pub view: View,
+    pub nodes: Vec<TreeNode>,
 }
 
 fn stands(gpu: &Gpu) -> Vec<Stand> {
@@ -114,7 +115,7 @@ fn listed(list: &Buffer<u32>, len: usize) -> Vec<u32> {
 const FRAME: u32 = 7;
 
 /// Marked nodes as flags, and the groups beside them, ascending.
-fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32>, Vec<u32>) {
+pub fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let node_count = stand.tree.len();
     let (occluders, grids) = (stored(gpu, occluders), grids(gpu));
     let [marked, visible, groups] = [(); 3].map(|()| zeros(gpu, node_count));
@@ -170,7 +171,7 @@ fn groups_are_the_thesis_unknown_nodes() {
 }
 
 /// Runs the passes of `eovc/cull_groups` from `groups` on.
-fn culled_on_gpu(
+pub fn culled_on_gpu(
     gpu: &Gpu,
     stand: &Stand,
     groups: &[u32],

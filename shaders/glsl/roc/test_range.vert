@@ -1,0 +1,26 @@
+// roc/test_range: the boxes of a depth range's objects that were not drawn yet, against the depth of all that was, nearer
+// ranges included. No colour, no depth is written (EOVC thesis II.2, iterative occlusion culling).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "select.glsl"
+
+layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
+// A command of each object, of which only the object is read; the same buffer as `late`.
+layout(set = 0, binding = 1, scalar) readonly buffer Commands { DrawCommand items[]; } commands;
+layout(set = 0, binding = 2, scalar) readonly buffer Places { uint items[]; } places;
+layout(set = 0, binding = 3, scalar) readonly buffer ViewBlock { BoxView items[]; } views;
+
+layout(location = 0) flat out uint command;
+
+invariant gl_Position;
+
+void main() {
+    command = gl_InstanceIndex;
+    uint object = commands.items[command].first_instance;
+    if ((places.items[object] & PLACE_SELECTION_MASK) == SELECT_TESTED) {
+        gl_Position = clip_from_grown_corner(bounds.items[object], views.items[0], uint(gl_VertexIndex));
+    } else {
+        // Drawn without a test: a box that reaches the near plane has no picture. This point is outside the view volume.
+        gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+    }
+}
