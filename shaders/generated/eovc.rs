@@ -108,8 +108,8 @@ impl Default for CastRaysConstants {
 }
 
 /// Groups outside the view volume are dropped (EOVC thesis III.3, figure 5). Some groups are opened, that is,
-/// their children stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as
-/// hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
+/// their children stand in for them: those that reach the near plane, which cannot be rasterised, or farther than f32 can be
+/// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
 /// be cast there again. Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
 /// rays would meet all there is: every object in the view volume is hit. The lists' order does not show: they are drawn without
 /// colour or depth. A pass goes down CULL_LEVELS levels and lists what it leaves open for the next, so that no invocation walks
@@ -301,8 +301,8 @@ const _: () = {
 };
 
 /// Whoever owns a pixel of the item buffer is an occluder of the next frame (EOVC thesis III.6.2, figures
-/// 12 and 13). Drawing in any order flags hidden objects too; this does not. One invocation a strip of FILTER_STRIP pixels: what
-/// it has just flagged it need not flag again. Twin: culling/src/eovc/twin.rs.
+/// 12 and 13). Drawing in any order flags hidden objects too; this does not. One invocation a strip of FILTER_STRIP pixels of
+/// a column: what it has just flagged it need not flag again. Twin: culling/src/eovc/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct FilterOccluders {
     /// `owners` in GLSL.

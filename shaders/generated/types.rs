@@ -62,7 +62,7 @@ pub const OBJECT_ALWAYS_KEPT: u32 = 4;
 /// How many visibility flags one invocation of the packing stages walks.
 pub const PACK_CHUNK: u32 = 64;
 
-/// Pixels of a row that one invocation of eovc/filter_occluders looks at.
+/// Pixels of a column that one invocation of eovc/filter_occluders looks at.
 pub const FILTER_STRIP: u32 = 16;
 
 /// No object: the item buffer where nothing was drawn.

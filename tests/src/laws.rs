@@ -59,8 +59,8 @@ pub fn skipping_changes_no_pixel(gpu: &Gpu, subject: &Subject, case: &Case) -> V
     faults
 }
 
-/// Methods that test more finely where earlier frames saw something: how many frames ran decides which hidden objects they
-/// draw, never what is seen. The law is about pictures.
+/// Methods that test more finely where earlier frames saw something, and filter occluders every few frames: how many frames
+/// ran decides which hidden objects they draw, never what is seen. The law is about pictures.
 const LEARNING: [&str; 1] = ["eovc"];
 
 fn shot_changed(shots: &[scenes::Shot], frame: usize) -> bool {

@@ -36,7 +36,7 @@ fn faults(lab: &mut Lab, case: &Case, entry: &Entry, spoil: fn(&mut culling::Tes
 }
 
 fn methods_with_boxes() -> Vec<&'static Entry> {
-    METHODS.iter().filter(|entry| ["roc", "eovc"].contains(&entry.id)).collect()
+    METHODS.iter().filter(|entry| ["roc", "roc-iterative", "eovc"].contains(&entry.id)).collect()
 }
 
 #[test]

@@ -40,6 +40,9 @@ struct Eovc {
     late: DrawList,
     /// There if occluders are filtered.
     order: Option<LastToFirst>,
+    /// Frames from one filtering to the next, and frames until the next one.
+    every: u32,
+    until_filtering: u32,
     read_back: bool,
     frame: u32,
     counting: bool,
@@ -67,6 +70,8 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         early: DrawList::styled(gpu, "eovc.early", world, options::commands(options))?,
         late: DrawList::styled(gpu, "eovc.late", world, options::commands(options))?,
         order: if options.flag("of") { Some(LastToFirst::new(gpu, world)?) } else { None },
+        every: options.number("every"),
+        until_filtering: 0,
         read_back: options.flag("cr"),
         frame: 2,
         counting: false,
@@ -84,7 +89,7 @@ fn box_list(setup: &Setup<'_>, name: &str, len: usize) -> Result<BoxList> {
 
 impl Method for Eovc {
     fn needs_items(&self) -> bool {
-        self.filters()
+        self.filters_now()
     }
 
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
@@ -101,7 +106,9 @@ impl Method for Eovc {
         self.extract_groups(f, view); // 2. occludee group extraction
         self.query_groups(f, target)?; // 3. batch occlusion query
         self.render_occludees(f, world, view, target)?; // 4. occludee rendering
-        self.choose_occluders(f, target) // 5. the next frame's occluders
+        self.choose_occluders(f, target)?; // 5. the next frame's occluders
+        self.until_filtering = if self.until_filtering == 0 { self.every - 1 } else { self.until_filtering - 1 };
+        Ok(())
     }
 
     fn count_work(&mut self, on: bool) {
@@ -124,22 +131,32 @@ impl Method for Eovc {
 
     fn forget(&mut self) -> Result<()> {
         self.still.forget();
+        self.until_filtering = 0;
         self.frame += 1; // what was seen before is older than the last frame
         self.visible.iter_mut().try_for_each(|flags| Ok(flags.write(&vec![0; flags.len()])?))
     }
 }
 
 impl Eovc {
+    /// Occluders are filtered, in this frame or others.
     fn filters(&self) -> bool {
         self.order.is_some()
     }
 
+    fn filters_now(&self) -> bool {
+        self.filters() && self.until_filtering == 0
+    }
+
     /// Draws what the last frame saw: the potential occluders. Those of which a fragment passes the early tests are effective
-    /// (III.2). With occluder filtering all are taken for effective: each owned a pixel a frame ago.
+    /// (III.2). With occluder filtering all are taken for effective: each owned a pixel not long ago.
     fn map_occluders(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         f.part("mapping");
         let (potential, seen) = (self.visible[1 - self.now].all(), self.visible[self.now].all());
-        f.fill("eovc/clear_flags", &self.visible[self.now], 0);
+        if self.filters() && !self.filters_now() {
+            f.copy("eovc/keep_occluders", potential, seen);
+        } else {
+            f.fill("eovc/clear_flags", &self.visible[self.now], 0);
+        }
         self.early.pack(f, world, potential);
         if self.read_back {
             self.early.read_back(f)?;
@@ -248,30 +265,36 @@ impl Eovc {
         if self.read_back {
             self.late.read_back(f)?;
         }
+        let seen = self.visible[self.now].all();
         match &self.order {
             // Of two that are as near the owner of the last frame stays: otherwise they would take turns as occluders.
-            Some(order) => world.draw_behind(f, &self.late, order, view, target),
-            None => world.draw_flagged(f, &self.late, self.visible[self.now].all(), view, target),
+            Some(order) => {
+                let flags = if self.filters_now() { None } else { Some(seen) };
+                world.draw_behind(f, &self.late, order, flags, view, target);
+            }
+            None => world.draw_flagged(f, &self.late, seen, view, target),
         }
         Ok(())
     }
 
-    /// The next frame's potential occluders are those flagged while drawing, or, filtered, those in front (III.6.2).
+    /// The next frame's potential occluders are those flagged while drawing, or, filtered, those in front (III.6.2). Between
+    /// two filterings occluders stay and what shows is added: most frames then need no item buffer.
     fn choose_occluders(&self, f: &mut Frame, target: &Target) -> Result<()> {
         f.part("filtering");
-        if self.filters() {
+        if self.filters_now() {
             let Some(owners) = target.item else {
                 let needs = "the item buffer for occluder filtering; bind it, or set eovc.of=false".into();
                 return Err(Error::Missing { method: "eovc", needs });
             };
-            let strips = target.size[0].div_ceil(FILTER_STRIP);
+            let strips = target.size[1].div_ceil(FILTER_STRIP);
             let occluders = self.visible[self.now].all();
             f.dispatch(
                 eovc::FilterOccluders { owners, occluders, size_px: target.size, strips },
-                strips * target.size[1],
+                strips * target.size[0],
             );
         } else {
-            f.skip(eovc::FilterOccluders::INFO.name, "occluder filtering is off");
+            let reason = if self.filters() { "filtered a few frames ago" } else { "occluder filtering is off" };
+            f.skip(eovc::FilterOccluders::INFO.name, reason);
         }
         f.part("");
         Ok(())
@@ -283,7 +306,7 @@ impl Eovc {
             f.part(part);
             list.skip_packing(f, Still::REASON);
             match &self.order {
-                Some(order) if part == "occludees" => world.draw_behind(f, list, order, view, target),
+                Some(order) if part == "occludees" => world.draw_behind(f, list, order, None, view, target),
                 _ => world.draw(f, list, view, target),
             }
         }

@@ -14,6 +14,12 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "occluder filtering: the item buffer names the next frame's occluders (thesis III.6.2)",
     },
     OptionInfo {
+        name: "every",
+        default: "4",
+        values: "1..=64",
+        help: "frames from one occluder filtering to the next; what comes into view between them is added; 1 is the thesis",
+    },
+    OptionInfo {
         name: "cr",
         default: "false",
         values: "true|false",

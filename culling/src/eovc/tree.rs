@@ -112,7 +112,8 @@ fn build(world: &World, options: BvhOptions) -> Result<Bvh> {
     })
 }
 
-/// The nodes as the GPU takes them, rounded outward. A node is as wide in the raster as the widest object below.
+/// The nodes as the GPU takes them, rounded outward. A node is as wide in the raster as the widest object below. One that reaches
+/// farther than f32 can be trusted with is always opened.
 fn flatten(bvh: &Bvh, flags: &[u32]) -> Vec<TreeNode> {
     let mut below = vec![0u32; bvh.nodes().len()];
     // Children come after their parents, so this goes from the leaves up.

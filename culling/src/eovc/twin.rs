@@ -4,7 +4,7 @@
 use crate::boxes::twin::{crosses_near, grown};
 use crate::frustum::twin::{clip_from_bounds, footprint_widening, outside_frustum};
 use scenes::bvh::{Bvh, NO_NODE};
-use shaders::types::{CullView, TreeNode, ITEM_NONE, RAY_OBJECTS};
+use shaders::types::{CullView, TreeNode, ITEM_NONE, OBJECT_ALWAYS_KEPT, RAY_OBJECTS};
 
 /// 1 for each node on a way from an effective occluder to the root. Twin of `eovc/mark_paths`.
 pub fn mark_paths(bvh: &Bvh, occluders: &[u32]) -> Vec<u32> {
@@ -54,10 +54,11 @@ pub fn cull_groups(
     while let Some(index) = left.pop() {
         let node = &nodes[index as usize];
         let (clip, flags) = (clip_from_bounds(&node.bounds, view), node.bounds.flags);
-        if outside_frustum(&clip, footprint_widening(flags, view)) {
+        let kept = flags & OBJECT_ALWAYS_KEPT != 0;
+        if !kept && outside_frustum(&clip, footprint_widening(flags, view)) {
             continue;
         }
-        let shows = nothing_hides || crosses_near(&clip_from_bounds(&grown(&node.bounds, view), view));
+        let shows = kept || nothing_hides || crosses_near(&clip_from_bounds(&grown(&node.bounds, view), view));
         let opens =
             shows || node.object_count > RAY_OBJECTS || seen_into.is_some_and(|seen_into| seen_into[index as usize]);
         match (node.is_leaf != 0, opens) {

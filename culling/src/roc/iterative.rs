@@ -5,7 +5,7 @@
 
 use super::{Cuts, RangeLists, SETTLED_AFTER};
 use crate::world::Still;
-use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
+use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
 use shaders::types::MOST_RANGES;
 use shaders::{roc, Stage};
@@ -107,7 +107,13 @@ impl Method for Iterative {
     }
 
     fn work(&self) -> Result<Work> {
-        Ok(Work { boxes: self.lists.read_boxes()?, ..Work::default() })
+        Ok(Work { boxes: self.lists.read_tested()?.len() as u64, ..Work::default() })
+    }
+
+    fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
+        let boxes = world.host_bounds();
+        let singles = self.lists.read_tested()?.into_iter().map(|object| boxes[object]).collect();
+        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
     }
 
     fn forget(&mut self) -> Result<()> {

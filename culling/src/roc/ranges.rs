@@ -227,10 +227,10 @@ impl RangeLists {
         self.shape.draw(self.boxes.all().from(range * kinds), kinds as u32)
     }
 
-    /// How many boxes the last frame tested.
-    pub fn read_boxes(&self) -> Result<u64> {
-        let is_tested = |place: &&u32| **place & PLACE_SELECTION_MASK == SELECT_TESTED;
-        Ok(self.places.read()?.iter().filter(is_tested).count() as u64)
+    /// The objects whose boxes the last frame tested.
+    pub fn read_tested(&self) -> Result<Vec<usize>> {
+        let places = self.places.read()?;
+        Ok((0..places.len()).filter(|object| places[*object] & PLACE_SELECTION_MASK == SELECT_TESTED).collect())
     }
 
     fn assert_made_for(&self, world: &World) {

@@ -11,6 +11,7 @@ use crate::world::{View, World};
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, Placement, Primitives, Target};
 use shaders::types::MeshRange;
+use shaders::BufferRef;
 
 /// The indices of a world with each mesh's primitives last to first.
 pub struct LastToFirst {
@@ -50,11 +51,24 @@ fn turn_round(indices: &mut [u32], mesh: MeshRange, primitives: Primitives) {
 }
 
 impl World {
-    /// Draws what a list holds where it is nearer than what is there.
-    pub fn draw_behind(&self, f: &mut Frame, list: &DrawList, order: &LastToFirst, view: &View, target: &Target) {
+    /// Draws what a list holds where it is nearer than what is there, and sets the flag of each object that is, if there are
+    /// flags to set.
+    pub fn draw_behind(
+        &self,
+        f: &mut Frame,
+        list: &DrawList,
+        order: &LastToFirst,
+        visible: Option<BufferRef<u32>>,
+        view: &View,
+        target: &Target,
+    ) {
+        let target = target.keeping_ties();
         for draw in list.draws(self) {
             let draw = engine::IndexedIndirect { indices: order.indices.all().into(), ..draw };
-            self.draw_indirect(f, draw, view, &target.keeping_ties());
+            match visible {
+                Some(visible) => self.draw_indirect_flagged(f, draw, visible, view, &target),
+                None => self.draw_indirect(f, draw, view, &target),
+            }
         }
     }
 }

@@ -135,12 +135,17 @@ pub fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
     let split_centre = Vec3::from(centre_high).as_dvec3() + Vec3::from(centre_low).as_dvec3();
     let half = (box_.max - split_centre).max(split_centre - box_.min) + pad;
     let half_extent = round_up(half);
-    let usable = half_extent.is_finite() && Vec3::from(centre_high).is_finite() && Vec3::from(centre_low).is_finite();
+    let reach = half_extent.abs() + Vec3::from(centre_high).abs() + Vec3::from(centre_low).abs();
+    let usable = reach.is_finite() && reach.max_element() < MOST_REACH;
     if !usable {
         return Bounds { flags: flags | OBJECT_ALWAYS_KEPT, ..Bounds::default() };
     }
     Bounds { centre_high, centre_low, half_extent: half_extent.to_array(), flags }
 }
+
+/// Bounds that reach farther, in metres, are not tested: products with the matrix and sums over axes could leave what f32 holds.
+/// 10^18 m leaves a factor of 10^20 for both.
+const MOST_REACH: f32 = 1.0e18;
 
 fn round_up(value: DVec3) -> Vec3 {
     let one = |value: f64| {
@@ -189,8 +194,12 @@ mod tests {
 
     #[test]
     fn bounds_too_large_for_floats_are_always_kept() {
-        let box_ = Aabb { min: DVec3::splat(-1e40), max: DVec3::splat(1e40) };
-        assert_eq!(bounds(&box_, &DAffine3::IDENTITY, 0).flags, OBJECT_ALWAYS_KEPT);
+        for reach in [2e18, 3e38, 1e40] {
+            let box_ = Aabb { min: DVec3::splat(-reach), max: DVec3::splat(reach) };
+            assert_eq!(bounds(&box_, &DAffine3::IDENTITY, 0).flags, OBJECT_ALWAYS_KEPT, "{reach}");
+        }
+        let box_ = Aabb { min: DVec3::splat(-1e17), max: DVec3::splat(1e17) };
+        assert_eq!(bounds(&box_, &DAffine3::IDENTITY, 0).flags, 0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 // eovc/cull_groups: groups outside the view volume are dropped (EOVC thesis III.3, figure 5). Some groups are opened, that is,
-// their children stand in for them: those that reach the near plane, which cannot be rasterised (a leaf among them counts as
-// hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
+// their children stand in for them: those that reach the near plane, which cannot be rasterised, or farther than f32 can be
+// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
 // be cast there again. Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
 // rays would meet all there is: every object in the view volume is hit. The lists' order does not show: they are drawn without
 // colour or depth. A pass goes down CULL_LEVELS levels and lists what it leaves open for the next, so that no invocation walks
@@ -30,9 +30,10 @@ layout(push_constant, scalar) uniform Push { CullView view; uint frame; uint lis
 // Puts a node where it belongs; true if it is to be opened.
 bool sort_out(uint node, TreeNode here) {
     ClipBox box = clip_from_bounds(here.bounds, push.view);
-    if (outside_frustum(box, footprint_widening(here.bounds.flags, push.view))) return false;
+    bool kept = (here.bounds.flags & OBJECT_ALWAYS_KEPT) != 0u;
+    if (!kept && outside_frustum(box, footprint_widening(here.bounds.flags, push.view))) return false;
     bool nothing_hides = length_of(MARKED_LIST) == 0u;
-    bool reaches_near = crosses_near(clip_from_bounds(grown(here.bounds, push.view), push.view));
+    bool reaches_near = kept || crosses_near(clip_from_bounds(grown(here.bounds, push.view), push.view));
     if (here.is_leaf != 0u) {
         if (reaches_near || nothing_hides) hits.items[here.first_child] = 1u;
         else singles.items[atomicAdd(single_command.items[0].instance_count, 1u)] = node;

@@ -17,12 +17,19 @@ layout(set = 0, binding = 5, scalar) buffer Grids { uint items[]; } grids;
 layout(push_constant, scalar) uniform Push { uint object_count; uint frame; } push;
 #include "list.glsl"
 
-void main() {
-    uint object = invocation_index();
-    if (object >= push.object_count || occluders.items[object] == 0u) return;
-    uint node = leaves.items[object];
+void climb(uint leaf) {
+    uint node = leaf;
     while (node != TREE_NONE && atomicExchange(marked.items[node], push.frame) != push.frame) {
         visible.items[append_to(MARKED_LIST)] = node;
         node = nodes.items[node].parent;
     }
+}
+
+// An invocation looks at PACK_CHUNK objects, of which few are occluders.
+void main() {
+    uint first = invocation_index() * PACK_CHUNK;
+    if (first >= push.object_count) return;
+    uint end = min(first + PACK_CHUNK, push.object_count);
+    for (uint object = first; object < end; object++)
+        if (occluders.items[object] != 0u) climb(leaves.items[object]);
 }

@@ -13,7 +13,7 @@ const uint OBJECT_ALWAYS_KEPT = 4u;
 // How many visibility flags one invocation of the packing stages walks.
 const uint PACK_CHUNK = 64u;
 
-// Pixels of a row that one invocation of eovc/filter_occluders looks at.
+// Pixels of a column that one invocation of eovc/filter_occluders looks at.
 const uint FILTER_STRIP = 16u;
 
 // No object: the item buffer where nothing was drawn.

@@ -25,6 +25,7 @@ pub fn special() -> Vec<Case> {
         bad_bounds(),
         far_from_the_origin(),
         near_and_far(),
+        beyond_floats(),
     ]
 }
 
@@ -227,6 +228,15 @@ fn far_from_the_origin() -> Case {
         shot.pose.position += away;
     }
     Case { name: "far from the origin".into(), ..case }
+}
+
+/// An object that reaches farther than f32 can be trusted with, among others: every box around it does too.
+fn beyond_floats() -> Case {
+    let mut case = walled(100);
+    let mut huge = case.scene.objects[1].clone();
+    huge.world_from_object = sized(DVec3::new(1.0, 0.0, 0.0), DVec3::splat(2.0e38));
+    case.scene.objects.push(huge);
+    Case { name: "beyond floats".into(), ..case }
 }
 
 /// Things from a hundredth of a metre to a thousand kilometres away, near plane at 1 mm, far plane at 10^7 m.

@@ -6,7 +6,7 @@ use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
 use scenes::bvh::{NodeState, Split};
 use shaders::types::{
-    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, RAY_OBJECTS,
+    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, PACK_CHUNK, RAY_OBJECTS,
 };
 use shaders::{eovc, pack, roc};
 
@@ -133,7 +133,7 @@ pub fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32
         object_count,
         frame,
     };
-    f.dispatch(mark, object_count);
+    f.dispatch(mark, object_count.div_ceil(PACK_CHUNK));
     let extract = eovc::ExtractGroups {
         nodes,
         marked: all_marked,
@@ -283,11 +283,11 @@ fn occludees_and_filtered_occluders_equal_their_twins() {
         let mut lab = harness::Lab::new(&gpu, &case);
         let truth = lab.truth(&case.shots[0]);
         let occluders = zeros(&gpu, lab.world.len());
-        let strips = size[0].div_ceil(FILTER_STRIP);
+        let strips = size[1].div_ceil(FILTER_STRIP);
         let owners = lab.targets.with_items().item.unwrap();
         let mut f = gpu.frame();
         let stage = eovc::FilterOccluders { owners, occluders: occluders.all(), size_px: size, strips };
-        f.dispatch(stage, strips * size[1]);
+        f.dispatch(stage, strips * size[0]);
         f.finish().unwrap();
         let twin = eovc_twin::filter_occluders(&truth.images().items, lab.world.len());
         assert_eq!(occluders.read().unwrap(), twin, "{size:?}");

@@ -22,8 +22,8 @@ const COHERENT: &str =
 
 const NA: &[(&str, &str)] = &[("of", "false"), ("cr", "false")];
 const CR: &[(&str, &str)] = &[("of", "false"), ("cr", "true")];
-const OF: &[(&str, &str)] = &[("of", "true"), ("cr", "false")];
-const CR_OF: &[(&str, &str)] = &[("of", "true"), ("cr", "true")];
+const OF: &[(&str, &str)] = &[("of", "true"), ("every", "1"), ("cr", "false")];
+const CR_OF: &[(&str, &str)] = &[("of", "true"), ("every", "1"), ("cr", "true")];
 
 const fn plain(head: &'static str, method: &'static str) -> Column {
     Column { head, method, settings: &[] }

@@ -75,9 +75,9 @@ fn a_setting_that_a_method_lacks_is_named_with_the_table() {
 #[test]
 fn users_set_what_the_table_leaves_open_and_nothing_else() {
     let set = |text: &str| [text.to_owned()];
-    let split = small().plan(&set("eovc.pixels=64")).unwrap();
-    assert_eq!(split.labels[0].as_deref(), Some("eovc[pixels=64]"));
-    assert_eq!(split.labels[3].as_deref(), Some("eovc[bvh=equal,coherent=false,pixels=64]"));
+    let split = small().plan(&set("eovc.commands=zero-instance")).unwrap();
+    assert_eq!(split.labels[0].as_deref(), Some("eovc[commands=zero-instance]"));
+    assert_eq!(split.labels[3].as_deref(), Some("eovc[commands=zero-instance,bvh=equal,coherent=false]"));
     let error = small().plan(&set("eovc.bvh=sah")).unwrap_err().to_string();
     assert!(error.contains("table small sets eovc.bvh itself"), "{error}");
     assert!(small().plan(&set("eovc.nothing=1")).is_err());
