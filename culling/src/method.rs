@@ -67,8 +67,8 @@ pub trait Method {
         Ok(())
     }
 
-    /// True if the method's own frames need the item buffer, timed ones too.
-    fn needs_items(&self) -> bool {
+    /// True if the method's next frame needs the item buffer, even if it is timed.
+    fn needs_items(&self, _world: &World, _view: &View) -> bool {
         false
     }
 

@@ -109,8 +109,9 @@ impl Default for CastRaysConstants {
 
 /// Groups outside the view volume are dropped (EOVC thesis III.3, figure 5). Some groups are opened, that is,
 /// their children stand in for them: those that reach the near plane, which cannot be rasterised, or farther than f32 can be
-/// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
-/// be cast there again. Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
+/// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of a recent frame saw into, as rays would
+/// be cast there again. (Of the last frame alone will not do: where a group's box shows but no box in it does, the group would
+/// be opened, seen hidden, closed, and rays cast into it every other frame.) Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
 /// rays would meet all there is: every object in the view volume is hit. The lists' order does not show: they are drawn without
 /// colour or depth. A pass goes down CULL_LEVELS levels and lists what it leaves open for the next, so that no invocation walks
 /// far. Twin: culling/src/eovc/twin.rs.
@@ -225,7 +226,7 @@ const _: () = {
 /// Specialization constants of [`CullGroups`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CullGroupsConstants {
-    /// Open groups by what the last frame saw; false is the thesis.
+    /// Open groups by what earlier frames saw; false is the thesis.
     pub coherent: bool,
 }
 

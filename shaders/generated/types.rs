@@ -78,6 +78,9 @@ pub const RAY_OBJECTS: u32 = 4096;
 /// Levels of the hierarchy that one pass of eovc/cull_groups goes down: 31 nodes an invocation at most.
 pub const CULL_LEVELS: u32 = 4;
 
+/// Frames for which a group that a pixel has seen into stays open, at least; at most twice as many, so that not all close at once.
+pub const OPEN_FRAMES: u32 = 32;
+
 /// Words of a pass's grid: work groups in x, y and z, then how many nodes are listed.
 pub const GRID_WORDS: u32 = 4;
 

@@ -159,7 +159,11 @@ impl Lab {
     fn run(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize, items: bool) -> FrameReport {
         let view = self.look(shot, frame);
         method.prepare(&self.world, &view).unwrap();
-        let target = if items || method.needs_items() { self.targets.with_items() } else { self.targets.timed() };
+        let target = if items || method.needs_items(&self.world, &view) {
+            self.targets.with_items()
+        } else {
+            self.targets.timed()
+        };
         let mut f = self.gpu.frame();
         method.frame(&mut f, &self.world, &view, &target).unwrap();
         f.finish().unwrap_or_else(|error| panic!("frame {frame}: {error}"))

@@ -47,6 +47,21 @@ fn no_setting_fails_at_a_cut_or_resize() {
     assert_none(&faults.collect::<Vec<_>>());
 }
 
+/// Each setting takes its turn at the scenes and paths of the bench; all take all of them if SIGHTLINE_STRESS_CASES is set.
+#[test]
+fn no_setting_fails_on_a_path() {
+    let gpu = gpu();
+    let all = std::env::var_os("SIGHTLINE_STRESS_CASES").is_some();
+    let mut faults = Vec::new();
+    for (turn, setting) in settings().iter().enumerate() {
+        let chosen = |index: usize| all || index == turn % sessions::RUNS.len();
+        for (_, run) in sessions::RUNS.iter().enumerate().filter(|(index, _)| chosen(*index)) {
+            faults.extend(sessions::faults(&mut sessions::open(&gpu, *run, 8), "eovc", setting));
+        }
+    }
+    assert_none(&faults);
+}
+
 #[test]
 fn the_thesis_own_groups_hide_nothing() {
     let gpu = gpu();

@@ -80,8 +80,11 @@ impl Contender {
     /// Runs one frame through a view, with or without the item buffer.
     pub fn run(&mut self, session: &Session, view: &View, items: bool) -> Result<FrameReport> {
         self.method.prepare(&session.world, view)?;
-        let target =
-            if items || self.method.needs_items() { session.targets.with_items() } else { session.targets.timed() };
+        let target = if items || self.method.needs_items(&session.world, view) {
+            session.targets.with_items()
+        } else {
+            session.targets.timed()
+        };
         let before = session.gpu.memory_mib();
         let mut f = session.gpu.frame();
         self.method.frame(&mut f, &session.world, view, &target)?;

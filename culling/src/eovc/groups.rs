@@ -22,7 +22,7 @@ pub(super) struct Groups {
     grids: Buffer<u32>,
     no_grids: Buffer<u32>,
     no_boxes: Buffer<DrawCommand>,
-    /// Opens groups by what the last frame saw; false is the thesis.
+    /// Opens groups by what recent frames saw; false is the thesis.
     coherent: bool,
 }
 

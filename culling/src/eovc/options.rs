@@ -41,7 +41,7 @@ pub const OPTIONS: &[OptionInfo] = &[
         name: "coherent",
         default: "true",
         values: "true|false",
-        help: "open groups that the last frame saw into, instead of casting rays there again; false is the thesis",
+        help: "open groups that recent frames saw into, instead of casting rays there again; false is the thesis",
     },
 ];
 

@@ -40,7 +40,7 @@ pub struct Culled {
     pub hits: Vec<u32>,
 }
 
-/// Drops groups outside the view volume and opens some. `seen_into` says for each node whether a pixel of the last frame saw
+/// Drops groups outside the view volume and opens some. `seen_into` says for each node whether a pixel of a recent frame saw
 /// into it; none for the thesis' own groups. Twin of `eovc/cull_groups`.
 pub fn cull_groups(
     nodes: &[TreeNode],

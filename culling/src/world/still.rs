@@ -34,12 +34,15 @@ impl Still {
         Still { settled_after: frames, ..self }
     }
 
+    /// True if a frame would see exactly what the last one saw, whether or not stages may be left out.
+    pub fn same(&self, world: &World, view: &View) -> bool {
+        self.last.as_ref().is_some_and(|last| last.0.same(view) && last.1 == world.revision())
+    }
+
     /// True if this frame sees exactly what the last ones saw, and their lists have settled. Call once a frame.
     pub fn holds(&mut self, world: &World, view: &View) -> bool {
-        let now = Some((*view, world.revision()));
-        let same =
-            self.last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| last.0.same(&now.0) && last.1 == now.1);
-        self.last = now;
+        let same = self.same(world, view);
+        self.last = Some((*view, world.revision()));
         self.unchanged = if same { self.unchanged.saturating_add(1) } else { 0 };
         self.enabled && self.unchanged >= self.settled_after
     }

@@ -1,7 +1,8 @@
 // eovc/cull_groups: groups outside the view volume are dropped (EOVC thesis III.3, figure 5). Some groups are opened, that is,
 // their children stand in for them: those that reach the near plane, which cannot be rasterised, or farther than f32 can be
-// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of the last frame saw into, as rays would
-// be cast there again. Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
+// trusted with (a leaf among them counts as hit); those with too many objects for a ray; and, if COHERENT, those that a pixel of a recent frame saw into, as rays would
+// be cast there again. (Of the last frame alone will not do: where a group's box shows but no box in it does, the group would
+// be opened, seen hidden, closed, and rays cast into it every other frame.) Single objects go to a list of their own, as they need no ray. Without any occluder depth is empty, and
 // rays would meet all there is: every object in the view volume is hit. The lists' order does not show: they are drawn without
 // colour or depth. A pass goes down CULL_LEVELS levels and lists what it leaves open for the next, so that no invocation walks
 // far. Twin: culling/src/eovc/twin.rs
@@ -11,7 +12,7 @@
 #include "box.glsl"
 
 layout(local_size_x = 64) in;
-// Open groups by what the last frame saw; false is the thesis.
+// Open groups by what earlier frames saw; false is the thesis.
 layout(constant_id = 0) const bool COHERENT = true;
 layout(set = 0, binding = 0, scalar) readonly buffer Nodes { TreeNode items[]; } nodes;
 layout(set = 0, binding = 1, scalar) readonly buffer Starts { uint items[]; } starts;
@@ -23,7 +24,7 @@ layout(set = 0, binding = 6, scalar) writeonly buffer Singles { uint items[]; } 
 layout(set = 0, binding = 7, scalar) buffer SingleCommand { DrawCommand items[]; } single_command;
 layout(set = 0, binding = 8, scalar) writeonly buffer Hits { uint items[]; } hits;
 layout(set = 0, binding = 9, scalar) readonly buffer Touched { uint items[]; } touched;
-// frame counts from 2 on; list is where the pass starts.
+// frame counts from 2 OPEN_FRAMES on, so that 0 is long ago; list is where the pass starts.
 layout(push_constant, scalar) uniform Push { CullView view; uint frame; uint list; } push;
 #include "list.glsl"
 
@@ -39,7 +40,7 @@ bool sort_out(uint node, TreeNode here) {
         else singles.items[atomicAdd(single_command.items[0].instance_count, 1u)] = node;
         return false;
     }
-    bool seen_into = COHERENT && touched.items[node] == push.frame - 1u;
+    bool seen_into = COHERENT && push.frame - touched.items[node] <= OPEN_FRAMES + node % OPEN_FRAMES;
     if (reaches_near || nothing_hides || here.object_count > RAY_OBJECTS || seen_into) return true;
     groups.items[atomicAdd(group_command.items[0].instance_count, 1u)] = node;
     return false;

@@ -111,6 +111,9 @@ const uint RAY_OBJECTS = 4096u;
 // Levels of the hierarchy that one pass of eovc/cull_groups goes down: 31 nodes an invocation at most.
 const uint CULL_LEVELS = 4u;
 
+// Frames for which a group that a pixel has seen into stays open, at least; at most twice as many, so that not all close at once.
+const uint OPEN_FRAMES = 32u;
+
 // Words of a pass's grid: work groups in x, y and z, then how many nodes are listed.
 const uint GRID_WORDS = 4u;
 

@@ -112,7 +112,7 @@ fn listed(list: &Buffer<u32>, len: usize) -> Vec<u32> {
 }
 
 /// A frame's number, as a mark.
-const FRAME: u32 = 7;
+const FRAME: u32 = 1000;
 
 /// Marked nodes as flags, and the groups beside them, ascending.
 pub fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32>, Vec<u32>) {
@@ -192,7 +192,7 @@ pub fn culled_on_gpu(
     let hits = zeros(gpu, stand.world.len());
     let commands = [(); 2].map(|()| stored(gpu, &[DrawCommand::default()]));
     let touched: Vec<u32> = (0..node_count)
-        .map(|node| if seen_into.is_some_and(|seen_into| seen_into[node]) { FRAME - 1 } else { FRAME - 2 })
+        .map(|node| if seen_into.is_some_and(|seen_into| seen_into[node]) { FRAME - 1 } else { 0 })
         .collect();
     let touched = stored(gpu, &touched);
     let mut f = gpu.frame();

@@ -18,7 +18,7 @@ const PAPER: Paper = Paper {
 
 /// True of every column `EOVC`.
 const COHERENT: &str =
-    "eovc opens groups that the last frame saw into, which is ours: --set eovc.coherent=false is the thesis' own.";
+    "eovc opens groups that recent frames saw into, which is ours: --set eovc.coherent=false is the thesis' own.";
 
 const NA: &[(&str, &str)] = &[("of", "false"), ("cr", "false")];
 const CR: &[(&str, &str)] = &[("of", "false"), ("cr", "true")];
