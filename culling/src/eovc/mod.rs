@@ -104,7 +104,7 @@ fn box_list(setup: &Setup<'_>, name: &str, len: usize) -> Result<BoxList> {
 
 impl Method for Eovc {
     fn needs_items(&self, world: &World, view: &View) -> bool {
-        self.is_filtering_due(world, view)
+        self.is_filtering_due(world, view) && !self.still.would_hold(world, view)
     }
 
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {

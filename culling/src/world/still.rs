@@ -39,12 +39,17 @@ impl Still {
         self.last.as_ref().is_some_and(|last| last.0.same(view) && last.1 == world.revision())
     }
 
+    /// What [`Still::holds`] will say of the next frame.
+    pub fn would_hold(&self, world: &World, view: &View) -> bool {
+        self.enabled && self.same(world, view) && self.unchanged.saturating_add(1) >= self.settled_after
+    }
+
     /// True if this frame sees exactly what the last ones saw, and their lists have settled. Call once a frame.
     pub fn holds(&mut self, world: &World, view: &View) -> bool {
-        let same = self.same(world, view);
+        let (same, holds) = (self.same(world, view), self.would_hold(world, view));
         self.last = Some((*view, world.revision()));
         self.unchanged = if same { self.unchanged.saturating_add(1) } else { 0 };
-        self.enabled && self.unchanged >= self.settled_after
+        holds
     }
 
     /// The next frame is the first.
