@@ -2,6 +2,7 @@
 
 use culling::warp::{LastFrame, Settings, Warp};
 use culling::View;
+use glam::DVec3;
 use harness::Lab;
 use scenes::Shot;
 
@@ -13,6 +14,9 @@ mod depth;
 mod motion;
 #[path = "warp/twins.rs"]
 mod twins;
+
+/// A place from which the boxes of `moving-boxes` that move are seen.
+const OVER_BOXES: DVec3 = DVec3::new(2.0, 9.0, -26.0);
 
 /// A drawn frame, and what the warp made of it for the next one.
 struct Pair {

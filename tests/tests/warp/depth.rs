@@ -1,12 +1,12 @@
 //! Warped depth: what must hold of it whatever the twin says.
 
-use super::{warp, Pair};
+use super::{warp, Pair, OVER_BOXES};
 use culling::warp::Settings;
 use culling::View;
 use glam::{DVec3, DVec4};
 use harness::worlds::{cube, oblique, shot, sized, square, turned, walled, Case, Maker, PERSPECTIVE};
 use harness::{gpu, Lab, Random};
-use scenes::{CameraPath, Projection};
+use scenes::{Projection, Shot};
 
 /// The farthest depth of each block of pixels.
 fn farthest(depth: &[f32], [width, height]: [u32; 2], reduction: u32) -> Vec<f32> {
@@ -24,7 +24,7 @@ fn farthest(depth: &[f32], [width, height]: [u32; 2], reduction: u32) -> Vec<f32
 fn a_still_camera_warps_to_itself_exactly() {
     let gpu = gpu();
     let moving = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.3, seed: 2 }).unwrap();
-    let shot_of_moving = CameraPath::named(&moving, None, 1.0).unwrap().sample(3, 30);
+    let shot_of_moving = Shot { seconds: 2.5, ..shot(OVER_BOXES, DVec3::ZERO, PERSPECTIVE) };
     let parallel = Projection::Orthographic { half_height: 3.5, near: -2.0, far: 30.0 };
     let eye = DVec3::new(0.7, 0.4, 7.0);
     let mut cases = vec![Case::new("moving boxes, stopped", moving, vec![shot_of_moving])];
@@ -64,7 +64,7 @@ fn a_wall_is_warped_to_where_it_is() {
     place.matrix3 = glam::DMat3::from_rotation_y(0.4) * place.matrix3;
     maker.place(square, place);
     let at = |aside: DVec3| shot(DVec3::new(0.0, 0.3, 7.0) + aside, DVec3::new(0.3, 0.0, 0.0) + aside, PERSPECTIVE);
-    for (aside, most_holes) in [(DVec3::new(0.5, 0.2, 0.0), 0.2), (DVec3::new(0.1, -0.1, -0.9), 0.0)] {
+    for (aside, most_holes) in [(DVec3::new(0.5, 0.2, 0.0), 0.2), (DVec3::new(0.1, -0.1, -0.9), 0.001)] {
         let case = Case::new("wall", maker.scene.clone(), vec![at(DVec3::ZERO), at(aside)]).sized([320, 181]);
         let mut lab = Lab::new(&gpu, &case);
         let pair = warp(&mut lab, [&case.shots[0], &case.shots[1]], Settings::default());
@@ -87,7 +87,8 @@ fn a_wall_is_warped_to_where_it_is() {
     }
 }
 
-/// True for pixels of the new view whose point the last one did not see, nor anything within two pixels of it.
+/// True for pixels of the new view whose point the last one did not see, nor anything within two pixels of it; and so for
+/// the pixels around them, as the source of a neighbour may be taken.
 fn unseen(pair: &Pair, truth: &[f32]) -> Vec<bool> {
     let [width, height] = pair.view.size.map(|side| side as i64);
     let last: &View = pair.last.view();
@@ -105,7 +106,11 @@ fn unseen(pair: &Pair, truth: &[f32]) -> Vec<bool> {
         let mut inside = around.filter(|(x, y)| (0..width).contains(x) && (0..height).contains(y));
         inside.any(|(x, y)| f64::from(pair.depth[(y * width + x) as usize]) < place.z * 1.3)
     };
-    (0..truth.len()).map(|index| truth[index] > 0.0 && !seen_at(index)).collect()
+    let unseen: Vec<bool> = (0..truth.len()).map(|index| truth[index] > 0.0 && !seen_at(index)).collect();
+    let within = |x: i64, y: i64| (1..width - 1).contains(&x) && (1..height - 1).contains(&y);
+    let all_around =
+        |x: i64, y: i64| (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| unseen[(y * width + x) as usize]));
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| within(x, y) && all_around(x, y)).collect()
 }
 
 #[test]

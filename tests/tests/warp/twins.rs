@@ -1,12 +1,12 @@
 //! Each stage of the warp against its twin, at sizes that pyramids get wrong and in all settings.
 
-use super::{warp, Pair};
+use super::{warp, Pair, OVER_BOXES};
 use culling::warp::twin::{self, Grid, Search, Tightening};
 use culling::warp::{reprojections, Settings};
 use glam::DVec3;
 use harness::worlds::{shot, walled, Case, PERSPECTIVE};
 use harness::{gpu, Lab};
-use scenes::{CameraPath, Shot};
+use scenes::Shot;
 use shaders::types::TexelMotion;
 
 const SIZES: [[u32; 2]; 9] = [[1, 1], [3, 1], [1, 257], [2, 2], [8, 8], [63, 65], [64, 64], [161, 97], [513, 17]];
@@ -98,9 +98,8 @@ fn every_stage_equals_its_twin_in_all_settings() {
 fn every_stage_equals_its_twin_where_objects_move() {
     let gpu = gpu();
     let scene = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.5, seed: 2 }).unwrap();
-    let path = CameraPath::named(&scene, None, 1.0).unwrap();
-    let [first, mut second] = [path.sample(0, 30), path.sample(1, 30)];
-    second.seconds = first.seconds + 0.1;
+    let at = |seconds: f64| Shot { seconds, ..shot(OVER_BOXES, DVec3::ZERO, PERSPECTIVE) };
+    let [first, second] = [at(1.0), at(1.1)];
     let mut lab = Lab::new(&gpu, &Case::new("moving boxes", scene, vec![first, second]));
     let pair = warp(&mut lab, [&first, &second], Settings::default());
     check(&lab, &pair, &Settings::default(), "moving boxes");
