@@ -135,12 +135,14 @@ pub struct MeasureMotion {
     pub depth: ImageRef,
     /// `items` in GLSL.
     pub items: ImageRef,
-    /// By object: its reprojection; 0 for objects that do not move.
+    /// By object: 1 + its reprojection; 0 for objects that cannot move.
     pub slots: BufferRef<u32>,
-    /// The camera's, then one for each moving object.
+    /// Of each object that can move: what it and the camera did.
     pub reprojections: BufferRef<types::Reprojection>,
     /// `motions` in GLSL.
     pub motions: BufferRef<types::TexelMotion>,
+    /// `camera` in GLSL.
+    pub camera: types::Reprojection,
     /// `size_px` in GLSL.
     pub size_px: [u32; 2],
     /// `texels` in GLSL.
@@ -163,7 +165,7 @@ impl Stage for MeasureMotion {
             BindingInfo { name: "reprojections", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "motions", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 16,
+        push_size: 80,
         constants: &[ConstantInfo { name: "DYNAMIC", id: 0 }, ConstantInfo { name: "REDUCTION", id: 1 }],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -172,7 +174,7 @@ impl Stage for MeasureMotion {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = MeasureMotionPush { size_px: self.size_px, texels: self.texels };
+        let push = MeasureMotionPush { camera: self.camera, size_px: self.size_px, texels: self.texels };
         BoundStage::new(
             Self::INFO,
             vec![
@@ -193,20 +195,22 @@ impl ComputeStage for MeasureMotion {}
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MeasureMotionPush {
+    camera: types::Reprojection,
     size_px: [u32; 2],
     texels: [u32; 2],
 }
 
 const _: () = {
-    assert!(std::mem::offset_of!(MeasureMotionPush, size_px) == 0);
-    assert!(std::mem::offset_of!(MeasureMotionPush, texels) == 8);
-    assert!(size_of::<MeasureMotionPush>() == 16);
+    assert!(std::mem::offset_of!(MeasureMotionPush, camera) == 0);
+    assert!(std::mem::offset_of!(MeasureMotionPush, size_px) == 64);
+    assert!(std::mem::offset_of!(MeasureMotionPush, texels) == 72);
+    assert!(size_of::<MeasureMotionPush>() == 80);
 };
 
 /// Specialization constants of [`MeasureMotion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasureMotionConstants {
-    /// Objects move: `items` is read. Otherwise all pixels move by reprojections\[0\].
+    /// Objects move: `items` is read. Otherwise the camera alone moves all pixels.
     pub dynamic: bool,
     /// Pixels of a texel's side.
     pub reduction: u32,

@@ -8,7 +8,7 @@ mod reprojection;
 mod settings;
 pub mod twin;
 
-pub use reprojection::{reprojections, LastFrame};
+pub use reprojection::{reprojections, LastFrame, Reprojections};
 pub use settings::{Settings, OPTIONS};
 
 use crate::{Result, View, World};
@@ -48,7 +48,7 @@ impl Warp {
         let bounds = |name: &str, len: usize| Buffer::new(gpu, name, len, Placement::Storage);
         Ok(Warp {
             slots: Buffer::with_data(gpu, "warp.slots", &slots(world), Placement::Storage)?,
-            reprojections: Buffer::new(gpu, "warp.reprojections", 1 + world.moving().len(), Placement::Upload)?,
+            reprojections: Buffer::new(gpu, "warp.reprojections", world.moving().len(), Placement::Upload)?,
             no_items: Image::new(gpu, "warp.no_items", Format::Item, [1, 1])?,
             levels: Buffer::with_data(gpu, "warp.levels", &layout, Placement::Storage)?,
             motions: Buffer::new(gpu, "warp.motions", area(texels), Placement::Storage)?,
@@ -82,16 +82,23 @@ impl Warp {
         items: Option<ImageRef>,
     ) -> Result<BufferRef<f32>> {
         assert_eq!([last.view().size, view.size], [self.size; 2], "a warp keeps the size of its pictures");
-        self.reprojections.write(&reprojections(last, world, view))?;
-        self.measure_motion(f, world, depth, items); // 1. where each pixel of the last frame goes
+        let Reprojections { camera, moving } = reprojections(last, world, view);
+        self.reprojections.write(&moving)?;
+        self.measure_motion(f, camera, !moving.is_empty(), depth, items); // 1. where each pixel of the last frame goes
         self.bound_motion(f); // 2. the least and greatest motion of each region
         self.tighten_bounds(f); // 3. where each tile's source can be
         self.search_depth(f); // 4. what moves here, and the nearest of it
         Ok(self.warped.all())
     }
 
-    fn measure_motion(&self, f: &mut Frame, world: &World, depth: ImageRef, items: Option<ImageRef>) {
-        let dynamic = world.moving().len() > 0;
+    fn measure_motion(
+        &self,
+        f: &mut Frame,
+        camera: Reprojection,
+        dynamic: bool,
+        depth: ImageRef,
+        items: Option<ImageRef>,
+    ) {
         assert!(items.is_some() || !dynamic, "pixels of moving objects are warped by the item buffer");
         let stage = warp::MeasureMotion {
             depth,
@@ -99,6 +106,7 @@ impl Warp {
             slots: self.slots.all(),
             reprojections: self.reprojections.all(),
             motions: self.motions.all(),
+            camera,
             size_px: self.size,
             texels: self.texels,
             constants: warp::MeasureMotionConstants { dynamic, reduction: self.settings.reduction },
@@ -192,7 +200,7 @@ impl Warp {
     }
 }
 
-/// By object: its reprojection's place; 0, the camera's, for what never moves.
+/// By object: 1 + the place of its reprojection; 0 for what cannot move.
 fn slots(world: &World) -> Vec<u32> {
     let mut slots = vec![0; world.len()];
     for (slot, (object, _)) in (1..).zip(world.moving()) {

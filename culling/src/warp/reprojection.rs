@@ -23,14 +23,23 @@ impl LastFrame {
     }
 }
 
-/// The camera's reprojection, then that of each moving object, in the order in which the world gives them.
+/// What the camera did, and what it and each object that can move did, in the order in which the world gives these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reprojections {
+    /// For all that cannot move.
+    pub camera: Reprojection,
+    /// For each object that can.
+    pub moving: Vec<Reprojection>,
+}
+
+/// The way from the last frame's clip space to the new one's.
 ///
 /// All of it is f64: a point's world position never appears in floats, so motion is as exact a million metres from the origin
 /// as beside it.
 ///
 /// # Panics
 /// If the two frames are not of the same world.
-pub fn reprojections(last: &LastFrame, world: &World, view: &View) -> Vec<Reprojection> {
+pub fn reprojections(last: &LastFrame, world: &World, view: &View) -> Reprojections {
     let moving: Vec<(u32, DAffine3)> = world.moving().collect();
     assert_eq!(moving.len(), last.transforms.len(), "the last frame is of another world");
     let camera = clip_from_last(last.view(), view, &DAffine3::IDENTITY);
@@ -43,7 +52,7 @@ pub fn reprojections(last: &LastFrame, world: &World, view: &View) -> Vec<Reproj
     };
     let objects = moving.iter().zip(&last.transforms).map(of_object);
     let gpu = |matrix: DMat4| Reprojection { clip_from_last: matrix.as_mat4().to_cols_array_2d() };
-    std::iter::once(camera).chain(objects).map(gpu).collect()
+    Reprojections { camera: gpu(camera), moving: objects.map(gpu).collect() }
 }
 
 /// The new view's clip space from the last one's (x, y, depth, 1), for what moved by `moved` in the world.

@@ -23,12 +23,11 @@ const NOWHERE: TexelMotion = TexelMotion { offset: [0.0; 2], depth: DEPTH_FAR };
 /// Bound of nothing.
 pub const NO_MOTION: MotionBound = MotionBound { low: [3.0e38; 2], high: [-3.0e38; 2] };
 
-/// Where each texel goes. `slot` gives the reprojection of the pixel's object. Twin of `warp/measure_motion`.
-pub fn measure_motion(
+/// Where each texel goes. `reprojection` gives that of the pixel's object. Twin of `warp/measure_motion`.
+pub fn measure_motion<'a>(
     depth: Grid<'_, f32>,
     reduction: u32,
-    slot: impl Fn(usize) -> usize,
-    reprojections: &[Reprojection],
+    reprojection: impl Fn(usize) -> &'a Reprojection,
 ) -> Vec<TexelMotion> {
     let [width, height] = depth.size.map(|side| side.div_ceil(reduction));
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -37,7 +36,7 @@ pub fn measure_motion(
             let (px, py) = farthest_pixel(&depth, reduction, x, y);
             let here = depth.at(px, py);
             if here > DEPTH_FAR {
-                let reprojection = &reprojections[slot((py * depth.size[0] + px) as usize)];
+                let reprojection = reprojection((py * depth.size[0] + px) as usize);
                 moved(reprojection, [px, py], depth.size, here, reduction)
             } else {
                 NOWHERE
@@ -64,7 +63,7 @@ fn moved(reprojection: &Reprojection, pixel: [u32; 2], size: [u32; 2], here: f32
     let size = UVec2::from(size).as_vec2();
     let place = (UVec2::from(pixel).as_vec2() + 0.5) / size * 2.0 - 1.0;
     let clip: Vec4 = m.x_axis * place.x + m.y_axis * place.y + m.z_axis * here + m.w_axis;
-    let offset = (Vec2::new(clip.x, clip.y) / clip.w - place) * 0.5 * size / reduction as f32;
+    let offset = (Vec2::new(clip.x, clip.y) / clip.w - place) * (0.5 * size / reduction as f32);
     let depth = clip.z / clip.w;
     let shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && offset.abs().cmplt(Vec2::splat(3.0e38)).all();
     if shows {

@@ -14,49 +14,53 @@
 #include "motion.glsl"
 
 layout(local_size_x = 64) in;
-// Objects move: `items` is read. Otherwise all pixels move by reprojections[0].
+// Objects move: `items` is read. Otherwise the camera alone moves all pixels.
 layout(constant_id = 0) const bool DYNAMIC = false;
 // Pixels of a texel's side.
 layout(constant_id = 1) const uint REDUCTION = 1u;
 
 layout(set = 0, binding = 0) uniform texture2D depth;
 layout(set = 0, binding = 1) uniform utexture2D items;
-// By object: its reprojection; 0 for objects that do not move.
+// By object: 1 + its reprojection; 0 for objects that cannot move.
 layout(set = 0, binding = 2, scalar) readonly buffer Slots { uint items[]; } slots;
-// The camera's, then one for each moving object.
+// Of each object that can move: what it and the camera did.
 layout(set = 0, binding = 3, scalar) readonly buffer Reprojections { Reprojection items[]; } reprojections;
 layout(set = 0, binding = 4, scalar) writeonly buffer Motions { TexelMotion items[]; } motions;
-layout(push_constant, scalar) uniform Push { uvec2 size_px; uvec2 texels; } push;
+layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 size_px; uvec2 texels; } push;
 
 float depth_at(uvec2 pixel) {
     return texelFetch(depth, ivec2(pixel), 0).r;
 }
 
-// The first pixel of the block, in reading order, that is as far as any.
-uvec2 farthest_pixel(uvec2 texel) {
+// The first pixel of the block, in reading order, that is as far as any; `farthest` is its depth.
+uvec2 farthest_pixel(uvec2 texel, out float farthest) {
     uvec2 first = texel * REDUCTION;
+    uvec2 found = first;
+    farthest = depth_at(first);
+    if (REDUCTION == 1u) return found;
     uvec2 end = min(first + REDUCTION, push.size_px);
-    uvec2 farthest = first;
-    float farthest_depth = depth_at(first);
     for (uint y = first.y; y < end.y; y++) {
         for (uint x = first.x; x < end.x; x++) {
             float here = depth_at(uvec2(x, y));
-            if (here < farthest_depth) {
-                farthest = uvec2(x, y);
-                farthest_depth = here;
+            if (here < farthest) {
+                found = uvec2(x, y);
+                farthest = here;
             }
         }
     }
-    return farthest;
+    return found;
 }
 
 TexelMotion moved(uvec2 pixel, float here) {
-    uint slot = DYNAMIC ? slots.items[texelFetch(items, ivec2(pixel), 0).r] : 0u;
-    mat4 m = reprojections.items[slot].clip_from_last;
+    mat4 m = push.camera.clip_from_last;
+    if (DYNAMIC) {
+        uint slot = slots.items[texelFetch(items, ivec2(pixel), 0).r];
+        if (slot != 0u) m = reprojections.items[slot - 1u].clip_from_last;
+    }
     vec2 size = vec2(push.size_px);
     precise vec2 place = (vec2(pixel) + 0.5) / size * 2.0 - 1.0;
     precise vec4 clip = m[0] * place.x + m[1] * place.y + m[2] * here + m[3];
-    precise vec2 offset = (clip.xy / clip.w - place) * 0.5 * size / float(REDUCTION);
+    precise vec2 offset = (clip.xy / clip.w - place) * (0.5 * size / float(REDUCTION));
     precise float depth = clip.z / clip.w;
     // Said so that NaN is nothing: what has no place in the new view must hide nothing there.
     bool shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && all(lessThan(abs(offset), vec2(3.0e38)));
@@ -66,7 +70,7 @@ TexelMotion moved(uvec2 pixel, float here) {
 void main() {
     uint index = invocation_index();
     if (index >= push.texels.x * push.texels.y) return;
-    uvec2 pixel = farthest_pixel(uvec2(index % push.texels.x, index / push.texels.x));
-    float here = depth_at(pixel);
+    float here;
+    uvec2 pixel = farthest_pixel(uvec2(index % push.texels.x, index / push.texels.x), here);
     motions.items[index] = here > DEPTH_FAR ? moved(pixel, here) : TexelMotion(vec2(0.0), DEPTH_FAR);
 }
