@@ -327,7 +327,7 @@ pub struct SearchDepthConstants {
 impl Default for SearchDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { seeds: 4, iterations: 3, threshold: 0.5, tile: 8, narrow: 1.0, fill: false }
+        Self { seeds: 4, iterations: 3, threshold: 0.5, tile: 4, narrow: 1.0, fill: false }
     }
 }
 
@@ -423,6 +423,6 @@ pub struct TightenBoundsConstants {
 impl Default for TightenBoundsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { steps: 3, tile: 8, keep_last: false }
+        Self { steps: 3, tile: 4, keep_last: false }
     }
 }

@@ -26,7 +26,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "tile",
-        default: "8",
+        default: "4",
         values: "1|2|4|8|16",
         help: "texels of the side of a tile that shares a search bound; 1 is the paper's",
     },

@@ -17,7 +17,7 @@ layout(constant_id = 1) const uint ITERATIONS = 3u;
 // How close to p a texel must come, in texels: above 0, at most 0.5.
 layout(constant_id = 2) const float THRESHOLD = 0.5;
 // Texels of the side of a tile that shares a bound.
-layout(constant_id = 3) const uint TILE = 8u;
+layout(constant_id = 3) const uint TILE = 4u;
 // A bound no wider than this, in texels, is sampled once: all that lies there moves alike.
 layout(constant_id = 4) const float NARROW = 1.0;
 layout(constant_id = 5) const bool FILL = false;

@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 // Tightening steps; with none the bound of all motions is taken.
 layout(constant_id = 0) const uint STEPS = 3u;
 // Texels of a tile's side.
-layout(constant_id = 1) const uint TILE = 8u;
+layout(constant_id = 1) const uint TILE = 4u;
 layout(constant_id = 2) const bool KEEP_LAST = false;
 
 layout(set = 0, binding = 0, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;

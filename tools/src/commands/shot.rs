@@ -7,7 +7,7 @@ use crate::png_out::{DepthScale, Picture};
 use crate::run::{fragment_counts, Contender};
 use crate::session::{cache_folder, Session};
 use crate::truth::RunTruth;
-use crate::warp_view;
+use crate::warp_view::{self, Warped};
 use anyhow::{bail, Context, Result};
 use culling::warp::{Settings, OPTIONS};
 use culling::{Options, TestedBoxes};
@@ -39,11 +39,9 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
     for frame in arguments.frame.saturating_sub(LEAD_FRAMES)..arguments.frame {
         contender.timed(&mut session, frame)?;
     }
-    let (picture, caption) = match arguments.view {
-        Show::Motion | Show::Warp | Show::Holes | Show::WarpError => {
-            warp_picture(&mut session, &mut contender, arguments, warp)?
-        }
-        _ => picture(&mut session, &mut contender, arguments)?,
+    let (picture, caption) = match warp_shown(arguments.view) {
+        Some(shown) => warp_picture(&mut session, &mut contender, arguments.frame, warp, shown)?,
+        None => picture(&mut session, &mut contender, arguments)?,
     };
     if let Some(folder) = arguments.out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder", folder.display()))?;
@@ -89,21 +87,27 @@ fn warp_settings(sets: &[String]) -> Result<Settings> {
     Ok(Settings::of(&options))
 }
 
-/// The picture of a warp from the frame before, and its errors in words.
+/// The picture of a warp that a view asks for, if it does.
+fn warp_shown(view: Show) -> Option<fn(&Warped) -> Picture> {
+    match view {
+        Show::Motion => Some(Warped::motion),
+        Show::Warp => Some(Warped::picture),
+        Show::Holes => Some(Warped::holes),
+        Show::WarpError => Some(Warped::error),
+        _ => None,
+    }
+}
+
+/// A picture of the warp from the frame before, and its errors in words.
 fn warp_picture(
     session: &mut Session,
     contender: &mut Contender,
-    arguments: &ShotArgs,
+    frame: usize,
     settings: Settings,
+    shown: fn(&Warped) -> Picture,
 ) -> Result<(Picture, String)> {
-    let warped = warp_view::warp(session, contender, arguments.frame, settings)?;
-    let picture = match arguments.view {
-        Show::Motion => warped.motion(),
-        Show::Warp => warped.picture(),
-        Show::Holes => warped.holes(),
-        _ => warped.error(),
-    };
-    Ok((picture, format!(": {}", warped.caption())))
+    let warped = warp_view::warp(session, contender, frame, settings)?;
+    Ok((shown(&warped), format!(": {}", warped.caption())))
 }
 
 fn tested_boxes(session: &Session, contender: &Contender) -> Result<TestedBoxes> {
