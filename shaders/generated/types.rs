@@ -23,10 +23,16 @@ pub const LIST_LOCAL_SIZE: u32 = 64;
 /// `MOST_GROUPS` in GLSL.
 pub const MOST_GROUPS: u32 = 65535;
 
+/// How far a search may end from its texel, in texels, when its iterations are spent. Where the picture grows (by m), the
+/// motions of neighbours differ by m - 1 and end m apart: between them the search goes to and fro for ever, and only what
+/// grows by less than 1 + threshold would be found. One texel takes surfaces that grow up to twofold for whole; of two
+/// surfaces, it closes cracks of a texel at most.
+pub const WARP_CRACK: f32 = 1.0;
+
 /// How far from a texel's centre, in texels, a pixel may be that is taken from it: half a texel, as every place in the texel
-/// reads the same motion, and the threshold of the search, at most half a texel. A motion that ends farther outside the
-/// picture than this shows nowhere in it, so bounds leave it out.
-pub const WARP_REACH: f32 = 1.0;
+/// reads the same motion, and WARP_CRACK. A motion that ends farther outside the picture than this shows nowhere in it, so
+/// bounds leave it out.
+pub const WARP_REACH: f32 = 1.5;
 
 /// Levels that one reduction writes: an 8x8 tile of its source becomes 4x4, 2x2 and 1 texels.
 pub const REDUCED_LEVELS: u32 = 3;

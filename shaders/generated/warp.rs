@@ -229,7 +229,8 @@ impl Default for MeasureMotionConstants {
 /// far, which hides nothing, or (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018, 5.3).
 /// Twin: culling/src/warp/twin.rs
 ///
-/// Searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
+/// Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
+/// searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
 /// fixed point: the border is not smeared over what comes into view beside it.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchDepth {
@@ -327,7 +328,7 @@ pub struct SearchDepthConstants {
 impl Default for SearchDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { seeds: 4, iterations: 3, threshold: 0.5, tile: 4, narrow: 1.0, fill: false }
+        Self { seeds: 4, iterations: 5, threshold: 0.5, tile: 4, narrow: 1.0, fill: false }
     }
 }
 

@@ -174,11 +174,6 @@ impl Warp {
         self.texels
     }
 
-    /// How it warps.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
     /// Where each texel goes, read back; for pictures and tests.
     pub fn read_motions(&self) -> Result<Vec<TexelMotion>> {
         Ok(self.motions.read()?)

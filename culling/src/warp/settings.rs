@@ -11,7 +11,7 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "pixels of a warped texel's side; its depth is that of its farthest pixel",
     },
     OptionInfo { name: "seeds", default: "4", values: "1..=64", help: "seeds of the search at each texel (N)" },
-    OptionInfo { name: "iterations", default: "3", values: "1..=16", help: "iterations from each seed (T)" },
+    OptionInfo { name: "iterations", default: "5", values: "1..=16", help: "iterations from each seed (T)" },
     OptionInfo {
         name: "threshold",
         default: "0.5",

@@ -1,7 +1,9 @@
 //! The stages of depth warping in plain Rust: their definition.
 
 use glam::{Mat4, UVec2, Vec2, Vec4};
-use shaders::types::{MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, REDUCED_LEVELS, WARP_REACH};
+use shaders::types::{
+    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
+};
 
 /// A picture of `size`, row by row from the top.
 #[derive(Clone, Copy, Debug)]
@@ -250,17 +252,23 @@ impl Search<'_> {
     fn fixed_point_search(&self, p: Vec2, seed: Vec2) -> f32 {
         let mut place = self.inside(p - seed);
         let mut motion = self.motion_at(place);
-        for _ in 0..self.iterations {
-            if motion.depth <= DEPTH_FAR {
-                break;
-            }
+        let mut iteration = 1;
+        while motion.depth > DEPTH_FAR {
             let source = p - Vec2::from(motion.offset);
             let miss = place - source;
-            if miss.x * miss.x + miss.y * miss.y < self.threshold * self.threshold {
+            let distance_squared = miss.x * miss.x + miss.y * miss.y;
+            let spent = iteration >= self.iterations;
+            if distance_squared < self.threshold * self.threshold
+                || (spent && distance_squared < WARP_CRACK * WARP_CRACK)
+            {
                 return motion.depth;
+            }
+            if spent {
+                break;
             }
             place = self.inside(source);
             motion = self.motion_at(place);
+            iteration += 1;
         }
         DEPTH_FAR
     }

@@ -20,10 +20,16 @@ struct Reprojection {
     mat4 clip_from_last;
 };
 
+// How far a search may end from its texel, in texels, when its iterations are spent. Where the picture grows (by m), the
+// motions of neighbours differ by m - 1 and end m apart: between them the search goes to and fro for ever, and only what
+// grows by less than 1 + threshold would be found. One texel takes surfaces that grow up to twofold for whole; of two
+// surfaces, it closes cracks of a texel at most.
+const float WARP_CRACK = 1.0;
+
 // How far from a texel's centre, in texels, a pixel may be that is taken from it: half a texel, as every place in the texel
-// reads the same motion, and the threshold of the search, at most half a texel. A motion that ends farther outside the
-// picture than this shows nowhere in it, so bounds leave it out.
-const float WARP_REACH = 1.0;
+// reads the same motion, and WARP_CRACK. A motion that ends farther outside the picture than this shows nowhere in it, so
+// bounds leave it out.
+const float WARP_REACH = 1.5;
 
 MotionBound no_motion() {
     return MotionBound(vec2(3.0e38), vec2(-3.0e38));

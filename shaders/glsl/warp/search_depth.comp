@@ -4,7 +4,8 @@
 // far, which hides nothing, or (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018, 5.3).
 // Twin: culling/src/warp/twin.rs
 //
-// Searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
+// Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
+// searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
 // fixed point: the border is not smeared over what comes into view beside it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +14,7 @@
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint SEEDS = 4u;
-layout(constant_id = 1) const uint ITERATIONS = 3u;
+layout(constant_id = 1) const uint ITERATIONS = 5u;
 // How close to p a texel must come, in texels: above 0, at most 0.5.
 layout(constant_id = 2) const float THRESHOLD = 0.5;
 // Texels of the side of a tile that shares a bound.
@@ -40,11 +41,12 @@ TexelMotion motion_at(vec2 place) {
 float fixed_point_search(vec2 p, vec2 seed) {
     vec2 place = inside(p - seed);
     TexelMotion motion = motion_at(place);
-    for (uint k = 0u; k < ITERATIONS && motion.depth > DEPTH_FAR; k++) {
+    for (uint k = 1u; motion.depth > DEPTH_FAR; k++) {
         vec2 source = p - motion.offset;
         precise vec2 miss = place - source;
         precise float distance_squared = miss.x * miss.x + miss.y * miss.y;
         if (distance_squared < THRESHOLD * THRESHOLD) return motion.depth;
+        if (k >= ITERATIONS) return distance_squared < WARP_CRACK * WARP_CRACK ? motion.depth : DEPTH_FAR;
         place = inside(source);
         motion = motion_at(place);
     }

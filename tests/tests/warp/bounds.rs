@@ -66,7 +66,7 @@ fn lost_by_tightening(motions: &[TexelMotion], how: &Tightening<'_>) -> usize {
     let across = how.texels[0].div_ceil(how.tile);
     let mut lost = 0;
     for (at, offset) in showing(motions, how.texels) {
-        // Every texel that may take it: within half a texel and the threshold.
+        // Every texel that may take it.
         let end = at + Vec2::from(offset);
         for tile in 0..bounds.len() as u32 {
             let first = Vec2::new((tile % across * how.tile) as f32, (tile / across * how.tile) as f32) + 0.5;

@@ -64,17 +64,23 @@ fn a_wall_is_warped_to_where_it_is() {
     place.matrix3 = glam::DMat3::from_rotation_y(0.4) * place.matrix3;
     maker.place(square, place);
     let at = |aside: DVec3| shot(DVec3::new(0.0, 0.3, 7.0) + aside, DVec3::new(0.3, 0.0, 0.0) + aside, PERSPECTIVE);
-    for (aside, most_holes) in [(DVec3::new(0.5, 0.2, 0.0), 0.2), (DVec3::new(0.1, -0.1, -0.9), 0.001)] {
+    // The near end of the last wall grows more than 1.5-fold: neighbours end farther apart than the threshold lets pass.
+    let steps = [
+        (DVec3::new(0.5, 0.2, 0.0), 5, 0.2),
+        (DVec3::new(0.1, -0.1, -0.9), 5, 0.001),
+        (DVec3::new(0.0, 0.0, -1.7), 16, 0.01),
+    ];
+    for (aside, iterations, most_holes) in steps {
         let case = Case::new("wall", maker.scene.clone(), vec![at(DVec3::ZERO), at(aside)]).sized([320, 181]);
         let mut lab = Lab::new(&gpu, &case);
-        let pair = warp(&mut lab, [&case.shots[0], &case.shots[1]], Settings::default());
+        let pair = warp(&mut lab, [&case.shots[0], &case.shots[1]], Settings { iterations, ..Settings::default() });
         let truth = lab.truth(&case.shots[1]).images().depth.clone();
         // Depth of a plane is affine over the picture, so its slopes are those between any neighbours; the source's motion
-        // ends within half a texel and the threshold of its target, in each direction.
+        // ends within WARP_REACH of its target, in each direction.
         let slope = |step: usize| {
             (f64::from(truth[40 * 320 + 100 + 32 * step]) - f64::from(truth[40 * 320 + 100])).abs() / 32.0
         };
-        let most_error = 1.0 * (slope(1) + slope(320)) * 1.001 + 1e-6;
+        let most_error = f64::from(shaders::types::WARP_REACH) * (slope(1) + slope(320)) * 1.001 + 1e-6;
         let found = pair.warped.iter().zip(&truth).filter(|(warped, _)| **warped > 0.0);
         let worst = found.clone().map(|(warped, truth)| f64::from((warped - truth).abs())).fold(0.0, f64::max);
         let holes = 1.0 - found.clone().count() as f64 / truth.len() as f64;
@@ -140,6 +146,18 @@ fn holes_are_far_and_filled_only_if_asked() {
     // What is no hole is not touched by filling.
     let kept = plain.warped.iter().zip(&filled.warped).all(|(plain, filled)| *plain == 0.0 || plain == filled);
     assert!(kept, "filling changes what was found");
+}
+
+#[test]
+fn a_skipped_warp_names_every_stage() {
+    let gpu = gpu();
+    let mut f = gpu.frame();
+    culling::warp::Warp::skip(&mut f, "nothing moved");
+    let report = f.finish().unwrap();
+    let mut skipped: Vec<_> = report.skips.iter().map(|skip| skip.label.as_str()).collect();
+    skipped.sort_unstable();
+    let stages = shaders::STAGES.iter().map(|stage| stage.name).filter(|name| name.starts_with("warp/"));
+    assert!(stages.eq(skipped));
 }
 
 #[test]
