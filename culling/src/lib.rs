@@ -15,6 +15,7 @@ mod options;
 pub mod pack;
 pub mod reference;
 pub mod roc;
+pub mod warp;
 pub mod world;
 
 pub use error::Error;

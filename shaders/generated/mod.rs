@@ -10,6 +10,7 @@ pub mod hzb;
 pub mod pack;
 pub mod roc;
 pub mod types;
+pub mod warp;
 pub mod world;
 
 use crate::contract::{Stage, StageInfo};
@@ -46,5 +47,10 @@ pub const STAGES: &[&StageInfo] = &[
     <roc::SelectBoxes as Stage>::INFO,
     <roc::TestBoxes as Stage>::INFO,
     <roc::TestRange as Stage>::INFO,
+    <warp::BoundLevels as Stage>::INFO,
+    <warp::BoundMotion as Stage>::INFO,
+    <warp::MeasureMotion as Stage>::INFO,
+    <warp::SearchDepth as Stage>::INFO,
+    <warp::TightenBounds as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

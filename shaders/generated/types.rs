@@ -23,6 +23,17 @@ pub const LIST_LOCAL_SIZE: u32 = 64;
 /// `MOST_GROUPS` in GLSL.
 pub const MOST_GROUPS: u32 = 65535;
 
+/// How far a search may end from its texel, in texels, when its iterations are spent. Where the picture grows (by m), the
+/// motions of neighbours differ by m - 1 and end m apart: between them the search goes to and fro for ever, and only what
+/// grows by less than 1 + threshold would be found. One texel takes surfaces that grow up to twofold for whole; of two
+/// surfaces, it closes cracks of a texel at most.
+pub const WARP_CRACK: f32 = 1.0;
+
+/// How far from a texel's centre, in texels, a pixel may be that is taken from it: half a texel, as every place in the texel
+/// reads the same motion, and WARP_CRACK. A motion that ends farther outside the picture than this shows nowhere in it, so
+/// bounds leave it out.
+pub const WARP_REACH: f32 = 1.5;
+
 /// Levels that one reduction writes: an 8x8 tile of its source becomes 4x4, 2x2 and 1 texels.
 pub const REDUCED_LEVELS: u32 = 3;
 
@@ -206,6 +217,22 @@ const _: () = {
     assert!(size_of::<MeshRange>() == 12);
 };
 
+/// The least and the greatest motions of a region, by axis, in texels; empty if low exceeds high.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MotionBound {
+    /// `low` in GLSL.
+    pub low: [f32; 2],
+    /// `high` in GLSL.
+    pub high: [f32; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MotionBound, low) == 0);
+    assert!(std::mem::offset_of!(MotionBound, high) == 8);
+    assert!(size_of::<MotionBound>() == 16);
+};
+
 /// A moving object's place this frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -271,6 +298,35 @@ const _: () = {
     assert!(std::mem::offset_of!(PyramidLevel, width) == 4);
     assert!(std::mem::offset_of!(PyramidLevel, height) == 8);
     assert!(size_of::<PyramidLevel>() == 12);
+};
+
+/// Clip space of the new view from clip space of the last one (x, y, depth, 1): what the camera and one object did.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Reprojection {
+    /// `clip_from_last` in GLSL.
+    pub clip_from_last: [[f32; 4]; 4],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(Reprojection, clip_from_last) == 0);
+    assert!(size_of::<Reprojection>() == 64);
+};
+
+/// Where a texel of the last frame goes. A texel is a pixel, or the farthest of a block of pixels.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexelMotion {
+    /// Texels; to the right and down.
+    pub offset: [f32; 2],
+    /// Its depth in the new view; 0 (far): nothing there, or nothing that the new view can show.
+    pub depth: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexelMotion, offset) == 0);
+    assert!(std::mem::offset_of!(TexelMotion, depth) == 8);
+    assert!(size_of::<TexelMotion>() == 12);
 };
 
 /// A node of the geometry-level hierarchy. Children lie side by side: first_child and first_child + 1.

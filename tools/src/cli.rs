@@ -164,6 +164,14 @@ pub enum Show {
     Boxes,
     /// The same boxes over the picture itself
     BoxesFirstPerson,
+    /// Where each pixel of the frame before goes: direction as hue, length as brightness
+    Motion,
+    /// The depth that the frame before predicts for this one, as grey
+    Warp,
+    /// Where it predicts nothing: orange over the real depth
+    Holes,
+    /// Where it is wrong: red is nearer than the real depth (may hide what shows), blue farther (hides less), dark blue a hole
+    WarpError,
 }
 
 /// `sightline shot`.
@@ -178,7 +186,7 @@ pub struct ShotArgs {
     /// The method that draws it
     #[arg(long, value_name = "METHOD", default_value = "none")]
     pub method: String,
-    /// Sets the method's option; may be given several times
+    /// Sets the method's option, or how depth is warped for a view of that (warp.seeds=8); may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
     pub set: Vec<String>,
     /// The frame of the run

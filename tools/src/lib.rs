@@ -16,3 +16,4 @@ pub mod stats;
 pub mod tables;
 pub mod targets;
 pub mod truth;
+pub mod warp_view;

@@ -7,11 +7,13 @@
 //! errors (`metrics/tests.rs`).
 
 mod aggregate;
+mod depth;
 mod picture;
 #[cfg(test)]
 mod tests;
 
 pub use aggregate::MethodErrors;
+pub use depth::{DepthErrors, NOTICED};
 pub(crate) use picture::{class_of, PixelClass};
 
 /// The item buffer's value where no object was drawn.

@@ -136,18 +136,24 @@ impl DepthScale {
         Self { farthest, nearest }
     }
 
-    fn grey(self, depth: f32) -> [u8; 3] {
-        const DARKEST: f64 = 32.0;
+    /// The grey that [`Picture::depth`] gives a depth.
+    pub fn grey(self, depth: f32) -> [u8; 3] {
         if !depth.is_finite() {
             return FAULT;
         }
+        [(255.0 * self.brightness(depth)).round() as u8; 3]
+    }
+
+    /// The same from 0 (background) to 1, before it is rounded.
+    pub fn brightness(self, depth: f32) -> f64 {
+        const DARKEST: f64 = 32.0 / 255.0;
         if depth <= 0.0 {
-            return [0; 3];
+            return 0.0;
         }
         let log = |d: f32| f64::from(d).log2();
         let range = log(self.nearest) - log(self.farthest);
-        let brightness = if range > 0.0 { ((log(depth) - log(self.farthest)) / range).clamp(0.0, 1.0) } else { 1.0 };
-        [(DARKEST + brightness * (255.0 - DARKEST)).round() as u8; 3]
+        let share = if range > 0.0 { ((log(depth) - log(self.farthest)) / range).clamp(0.0, 1.0) } else { 1.0 };
+        DARKEST + share * (1.0 - DARKEST)
     }
 }
 

@@ -74,6 +74,8 @@ impl World {
         let storage = Placement::Storage;
         let moving = scene.motion.dynamic_objects().len();
         let moves = if moving == 0 { None } else { Some(Buffer::new(gpu, "world.moves", moving, Placement::Upload)?) };
+        let mut transforms = Vec::new();
+        scene.motion.transforms_at(0.0, &mut transforms);
         Ok(World {
             vertices: Buffer::with_data(gpu, "world.vertices", &flat.vertices, Placement::Geometry)?,
             indices: Buffer::with_data(gpu, "world.indices", &flat.indices, Placement::Geometry)?,
@@ -92,7 +94,7 @@ impl World {
                 object_meshes: flat.object_meshes,
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
                 static_objects: if moving == 0 { Vec::new() } else { flat.objects },
-                transforms: Vec::new(),
+                transforms,
                 move_count: 0,
                 seconds: None,
                 revision: 0,
@@ -290,6 +292,12 @@ impl World {
     /// Bounds as they are on the GPU now; for tests.
     pub fn read_bounds(&self) -> Result<Vec<Bounds>> {
         Ok(self.bounds.read()?)
+    }
+
+    /// Objects that can move, and where the last call of [`World::set_time`] put them, in an order that never changes.
+    pub fn moving(&self) -> impl ExactSizeIterator<Item = (u32, DAffine3)> + '_ {
+        let object = |scene_object: u32| self.host.object_of_scene[scene_object as usize];
+        self.host.transforms.iter().map(move |(scene_object, transform)| (object(*scene_object), *transform))
     }
 
     /// A command for every object; for tests and the ideal method.

@@ -7,15 +7,23 @@ use crate::png_out::{DepthScale, Picture};
 use crate::run::{fragment_counts, Contender};
 use crate::session::{cache_folder, Session};
 use crate::truth::RunTruth;
+use crate::warp_view::{self, Warped};
 use anyhow::{bail, Context, Result};
-use culling::TestedBoxes;
+use culling::warp::{Settings, OPTIONS};
+use culling::{Options, TestedBoxes};
 
 /// Frames that a method runs before the one shown, so that it has a past.
 const LEAD_FRAMES: usize = 2;
 
+/// What settings of the warp begin with.
+const WARP_PREFIX: &str = "warp.";
+
 /// Renders and writes the picture.
 pub fn run(arguments: &ShotArgs) -> Result<()> {
-    let mut methods = parse_methods(&arguments.method, &arguments.set)?;
+    let (warp_sets, method_sets): (Vec<_>, Vec<_>) =
+        arguments.set.iter().cloned().partition(|set| set.starts_with(WARP_PREFIX));
+    let warp = warp_settings(&warp_sets)?;
+    let mut methods = parse_methods(&arguments.method, &method_sets)?;
     let (Some((entry, options)), true) = (methods.pop(), methods.is_empty()) else {
         bail!("--method {}: a shot shows one method", arguments.method);
     };
@@ -31,7 +39,10 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
     for frame in arguments.frame.saturating_sub(LEAD_FRAMES)..arguments.frame {
         contender.timed(&mut session, frame)?;
     }
-    let (picture, caption) = picture(&mut session, &mut contender, arguments)?;
+    let (picture, caption) = match warp_shown(arguments.view) {
+        Some(shown) => warp_picture(&mut session, &mut contender, arguments.frame, warp, shown)?,
+        None => picture(&mut session, &mut contender, arguments)?,
+    };
     if let Some(folder) = arguments.out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder", folder.display()))?;
     }
@@ -52,7 +63,7 @@ fn picture(session: &mut Session, contender: &mut Contender, arguments: &ShotArg
             let counts = fragment_counts(session, &view, &report)?;
             Picture::overdraw(images.width, images.height, &counts)
         }
-        Show::Boxes | Show::BoxesFirstPerson => {
+        _ => {
             let boxes = tested_boxes(session, contender)?;
             let caption = format!(": {}", boxes_view::caption(&boxes));
             let picture = match arguments.view {
@@ -63,6 +74,40 @@ fn picture(session: &mut Session, contender: &mut Contender, arguments: &ShotArg
         }
     };
     Ok((picture, String::new()))
+}
+
+/// What `--set warp.OPTION=VALUE` says.
+fn warp_settings(sets: &[String]) -> Result<Settings> {
+    let mut options = Options::new("warp", OPTIONS);
+    for set in sets {
+        let setting = set.strip_prefix(WARP_PREFIX).and_then(|setting| setting.split_once('='));
+        let (name, value) = setting.with_context(|| format!("'{set}' is no setting; write warp.OPTION=VALUE"))?;
+        options.set(name, value).with_context(|| format!("--set {set}"))?;
+    }
+    Ok(Settings::of(&options))
+}
+
+/// The picture of a warp that a view asks for, if it does.
+fn warp_shown(view: Show) -> Option<fn(&Warped) -> Picture> {
+    match view {
+        Show::Motion => Some(Warped::motion),
+        Show::Warp => Some(Warped::picture),
+        Show::Holes => Some(Warped::holes),
+        Show::WarpError => Some(Warped::error),
+        _ => None,
+    }
+}
+
+/// A picture of the warp from the frame before, and its errors in words.
+fn warp_picture(
+    session: &mut Session,
+    contender: &mut Contender,
+    frame: usize,
+    settings: Settings,
+    shown: fn(&Warped) -> Picture,
+) -> Result<(Picture, String)> {
+    let warped = warp_view::warp(session, contender, frame, settings)?;
+    Ok((shown(&warped), format!(": {}", warped.caption())))
 }
 
 fn tested_boxes(session: &Session, contender: &Contender) -> Result<TestedBoxes> {

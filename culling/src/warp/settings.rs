@@ -1,0 +1,89 @@
+//! What can be set about depth warping.
+
+use crate::{OptionInfo, Options};
+
+/// Options of every method that warps. A method lists those it has beside its own.
+pub const OPTIONS: &[OptionInfo] = &[
+    OptionInfo {
+        name: "reduction",
+        default: "1",
+        values: "1|2|4",
+        help: "pixels of a warped texel's side; its depth is that of its farthest pixel",
+    },
+    OptionInfo { name: "seeds", default: "4", values: "1..=64", help: "seeds of the search at each texel (N)" },
+    OptionInfo { name: "iterations", default: "5", values: "1..=16", help: "iterations from each seed (T)" },
+    OptionInfo {
+        name: "threshold",
+        default: "0.5",
+        values: "0.125|0.25|0.5",
+        help: "how close to its texel a source must come, in texels",
+    },
+    OptionInfo {
+        name: "steps",
+        default: "3",
+        values: "0..=8",
+        help: "tightening steps of the search bound; 0 takes the bound of all motions",
+    },
+    OptionInfo {
+        name: "tile",
+        default: "4",
+        values: "1|2|4|8|16",
+        help: "texels of the side of a tile that shares a search bound; 1 is the paper's",
+    },
+    OptionInfo {
+        name: "narrow",
+        default: "1",
+        values: "0|0.5|1|2",
+        help: "width in texels up to which a bound is sampled once; 0 samples all alike",
+    },
+    OptionInfo {
+        name: "fill",
+        default: "false",
+        values: "true|false",
+        help: "fill holes from the extremes of the search bound (AWOC), instead of leaving them far",
+    },
+];
+
+/// The same, read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels of a texel's side: 1, 2 or 4.
+    pub reduction: u32,
+    /// Seeds at each texel, > 0: N in TOG 2018.
+    pub seeds: u32,
+    /// Iterations from each seed, > 0: T in TOG 2018.
+    pub iterations: u32,
+    /// How close to its texel a source must come, in texels: above 0, at most 0.5.
+    pub threshold: f32,
+    /// Tightening steps of the search bound; 0 takes the bound of all motions.
+    pub steps: u32,
+    /// Texels of the side of a tile that shares a search bound, > 0.
+    pub tile: u32,
+    /// Width in texels up to which a bound is sampled once.
+    pub narrow: f32,
+    /// Holes are filled from the extremes of the search bound: not conservative.
+    pub fill: bool,
+}
+
+impl Settings {
+    /// Reads the options of a method that has [`OPTIONS`] among its own.
+    pub fn of(options: &Options) -> Self {
+        let fraction = |name: &str| options.text(name).parse().unwrap_or(0.0);
+        Settings {
+            reduction: options.number("reduction"),
+            seeds: options.number("seeds"),
+            iterations: options.number("iterations"),
+            threshold: fraction("threshold"),
+            steps: options.number("steps"),
+            tile: options.number("tile"),
+            narrow: fraction("narrow"),
+            fill: options.flag("fill"),
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings::of(&Options::new("warp", OPTIONS))
+    }
+}

@@ -1,0 +1,312 @@
+//! The stages of depth warping in plain Rust: their definition.
+
+use glam::{Mat4, UVec2, Vec2, Vec4};
+use shaders::types::{
+    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
+};
+
+/// A picture of `size`, row by row from the top.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid<'a, T> {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// `width * height` values.
+    pub values: &'a [T],
+}
+
+impl<T: Copy> Grid<'_, T> {
+    fn at(&self, x: u32, y: u32) -> T {
+        self.values[(y * self.size[0] + x) as usize]
+    }
+}
+
+const NOWHERE: TexelMotion = TexelMotion { offset: [0.0; 2], depth: DEPTH_FAR };
+
+/// Bound of nothing.
+pub const NO_MOTION: MotionBound = MotionBound { low: [3.0e38; 2], high: [-3.0e38; 2] };
+
+/// Where each texel goes. `reprojection` gives that of the pixel's object. Twin of `warp/measure_motion`.
+pub fn measure_motion<'a>(
+    depth: Grid<'_, f32>,
+    reduction: u32,
+    reprojection: impl Fn(usize) -> &'a Reprojection,
+) -> Vec<TexelMotion> {
+    let [width, height] = depth.size.map(|side| side.div_ceil(reduction));
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    texels
+        .map(|(x, y)| {
+            let (px, py) = farthest_pixel(&depth, reduction, x, y);
+            let here = depth.at(px, py);
+            if here > DEPTH_FAR {
+                let reprojection = reprojection((py * depth.size[0] + px) as usize);
+                moved(reprojection, [px, py], depth.size, here, reduction)
+            } else {
+                NOWHERE
+            }
+        })
+        .collect()
+}
+
+fn farthest_pixel(depth: &Grid<'_, f32>, reduction: u32, x: u32, y: u32) -> (u32, u32) {
+    let (first_x, first_y) = (x * reduction, y * reduction);
+    let mut farthest = (first_x, first_y);
+    for y in first_y..(first_y + reduction).min(depth.size[1]) {
+        for x in first_x..(first_x + reduction).min(depth.size[0]) {
+            if depth.at(x, y) < depth.at(farthest.0, farthest.1) {
+                farthest = (x, y);
+            }
+        }
+    }
+    farthest
+}
+
+fn moved(reprojection: &Reprojection, pixel: [u32; 2], size: [u32; 2], here: f32, reduction: u32) -> TexelMotion {
+    let m = Mat4::from_cols_array_2d(&reprojection.clip_from_last);
+    let size = UVec2::from(size).as_vec2();
+    let place = (UVec2::from(pixel).as_vec2() + 0.5) / size * 2.0 - 1.0;
+    let clip: Vec4 = m.x_axis * place.x + m.y_axis * place.y + m.z_axis * here + m.w_axis;
+    let offset = (Vec2::new(clip.x, clip.y) / clip.w - place) * (0.5 * size / reduction as f32);
+    let depth = clip.z / clip.w;
+    let shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && offset.abs().cmplt(Vec2::splat(3.0e38)).all();
+    if shows {
+        TexelMotion { offset: offset.to_array(), depth }
+    } else {
+        NOWHERE
+    }
+}
+
+/// True unless the bound is empty.
+pub fn has_motion(bound: &MotionBound) -> bool {
+    (0..2).all(|axis| bound.low[axis] <= bound.high[axis])
+}
+
+fn union_of(a: MotionBound, b: MotionBound) -> MotionBound {
+    MotionBound {
+        low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
+        high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
+    }
+}
+
+fn common_to(a: MotionBound, b: MotionBound) -> MotionBound {
+    MotionBound {
+        low: std::array::from_fn(|axis| a.low[axis].max(b.low[axis])),
+        high: std::array::from_fn(|axis| a.high[axis].min(b.high[axis])),
+    }
+}
+
+/// A texel's own motion as a bound; empty if nothing is there or if it leaves the picture. Twin of `bound_of`.
+pub fn bound_of(motion: &TexelMotion, texel: [u32; 2], texels: [u32; 2]) -> MotionBound {
+    let end = |axis: usize| texel[axis] as f32 + 0.5 + motion.offset[axis];
+    let inside = |axis: usize| end(axis) >= -WARP_REACH && end(axis) <= texels[axis] as f32 + WARP_REACH;
+    if motion.depth > DEPTH_FAR && inside(0) && inside(1) {
+        MotionBound { low: motion.offset, high: motion.offset }
+    } else {
+        NO_MOTION
+    }
+}
+
+fn bound_once(source: Grid<'_, MotionBound>) -> Vec<MotionBound> {
+    let [width, height] = source.size.map(|side| side.div_ceil(2));
+    let bound = |x: u32, y: u32| {
+        let cells = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| (2 * x + dx, 2 * y + dy));
+        let inside = cells.into_iter().filter(|(x, y)| *x < source.size[0] && *y < source.size[1]);
+        inside.map(|(x, y)| source.at(x, y)).fold(NO_MOTION, union_of)
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| bound(x, y)).collect()
+}
+
+fn bound_three(source: &[MotionBound], mut size: [u32; 2]) -> Vec<MotionBound> {
+    let (mut all, mut level) = (Vec::new(), source.to_vec());
+    for _ in 0..REDUCED_LEVELS {
+        level = bound_once(Grid { size, values: &level });
+        size = size.map(|side| side.div_ceil(2));
+        all.extend_from_slice(&level);
+    }
+    all
+}
+
+/// The first three levels of the motion pyramid, one behind the other. Twin of `warp/bound_motion`.
+pub fn bound_motion(motions: Grid<'_, TexelMotion>) -> Vec<MotionBound> {
+    let width = motions.size[0];
+    let texel = |index: usize| [index as u32 % width, index as u32 / width];
+    let own = |(index, motion): (usize, &TexelMotion)| bound_of(motion, texel(index), motions.size);
+    let bounds: Vec<MotionBound> = motions.values.iter().enumerate().map(own).collect();
+    bound_three(&bounds, motions.size)
+}
+
+/// The three levels after `source_level`, one behind the other. Twin of `warp/bound_levels`.
+pub fn bound_levels(pyramid: &[MotionBound], levels: &[PyramidLevel], source_level: u32) -> Vec<MotionBound> {
+    let PyramidLevel { first, width, height } = levels[source_level as usize];
+    bound_three(&pyramid[first as usize..(first + width * height) as usize], [width, height])
+}
+
+/// The whole motion pyramid, by `levels` as the layout gives them.
+pub fn pyramid(motions: Grid<'_, TexelMotion>, levels: &[PyramidLevel]) -> Vec<MotionBound> {
+    let mut all = bound_motion(motions);
+    for source_level in (REDUCED_LEVELS..levels.len() as u32 - 1).step_by(REDUCED_LEVELS as usize) {
+        all.extend(bound_levels(&all, levels, source_level));
+    }
+    all
+}
+
+/// The motion pyramid and how it is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Tightening<'a> {
+    /// Where each level lies.
+    pub levels: &'a [PyramidLevel],
+    /// All bounds.
+    pub pyramid: &'a [MotionBound],
+    /// The level that has a single texel.
+    pub coarsest_level: u32,
+    /// Width and height in texels.
+    pub texels: [u32; 2],
+    /// Steps.
+    pub steps: u32,
+    /// Texels of a tile's side.
+    pub tile: u32,
+    /// Keep the last bound where nothing moves to the tile.
+    pub keep_last: bool,
+}
+
+impl Tightening<'_> {
+    /// The bound of all motions that start between two places, in texels. Twin of `local_bound`.
+    pub fn local_bound(&self, low: Vec2, high: Vec2) -> MotionBound {
+        let size = UVec2::from(self.texels).as_vec2();
+        if high.cmplt(Vec2::ZERO).any() || low.cmpge(size).any() {
+            return NO_MOTION;
+        }
+        let first = low.floor().clamp(Vec2::ZERO, size - 1.0).as_uvec2();
+        let last = high.floor().clamp(Vec2::ZERO, size - 1.0).as_uvec2();
+        let level = self.level_for((last - first).max_element());
+        let PyramidLevel { first: start, width, .. } = self.levels[level as usize];
+        let (first, last) = (first >> level, last >> level);
+        let bound = |x: u32, y: u32| self.pyramid[(start + y * width + x) as usize];
+        union_of(
+            union_of(bound(first.x, first.y), bound(last.x, first.y)),
+            union_of(bound(first.x, last.y), bound(last.x, last.y)),
+        )
+    }
+
+    /// The finest level at which texels `widest` apart are neighbours at most.
+    fn level_for(&self, widest: u32) -> u32 {
+        (1..self.coarsest_level).find(|level| 1 << level >= widest).unwrap_or(self.coarsest_level)
+    }
+}
+
+/// Which motions can bring a texel to each tile. Twin of `warp/tighten_bounds`.
+pub fn tighten_bounds(how: &Tightening<'_>) -> Vec<MotionBound> {
+    let [across, down] = how.texels.map(|side| side.div_ceil(how.tile));
+    let tiles = (0..down).flat_map(|y| (0..across).map(move |x| UVec2::new(x, y)));
+    tiles
+        .map(|tile| {
+            let first = tile * how.tile;
+            let last = (first + how.tile).min(UVec2::from(how.texels)) - 1;
+            let mut bound = how.pyramid[how.levels[how.coarsest_level as usize].first as usize];
+            for _ in 0..how.steps {
+                if !has_motion(&bound) {
+                    break;
+                }
+                let low = first.as_vec2() + 0.5 - Vec2::from(bound.high) - WARP_REACH;
+                let high = last.as_vec2() + 0.5 - Vec2::from(bound.low) + WARP_REACH;
+                let tighter = common_to(bound, how.local_bound(low, high));
+                if how.keep_last && !has_motion(&tighter) {
+                    break;
+                }
+                bound = tighter;
+            }
+            bound
+        })
+        .collect()
+}
+
+/// The motions and how they are searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Search<'a> {
+    /// By texel.
+    pub motions: Grid<'a, TexelMotion>,
+    /// By tile.
+    pub bounds: &'a [MotionBound],
+    /// Seeds a texel.
+    pub seeds: u32,
+    /// Iterations a seed.
+    pub iterations: u32,
+    /// How close a source must come, in texels.
+    pub threshold: f32,
+    /// Texels of a tile's side.
+    pub tile: u32,
+    /// A bound no wider than this, in texels, is sampled once.
+    pub narrow: f32,
+    /// Holes get the nearest depth at the extremes of the bound.
+    pub fill: bool,
+}
+
+impl Search<'_> {
+    fn inside(&self, place: Vec2) -> Vec2 {
+        place.clamp(Vec2::splat(0.5), UVec2::from(self.motions.size).as_vec2() - 0.5)
+    }
+
+    fn motion_at(&self, place: Vec2) -> TexelMotion {
+        self.motions.at(place.x as u32, place.y as u32)
+    }
+
+    fn fixed_point_search(&self, p: Vec2, seed: Vec2) -> f32 {
+        let mut place = self.inside(p - seed);
+        let mut motion = self.motion_at(place);
+        let mut iteration = 1;
+        while motion.depth > DEPTH_FAR {
+            let source = p - Vec2::from(motion.offset);
+            let miss = place - source;
+            let distance_squared = miss.x * miss.x + miss.y * miss.y;
+            let spent = iteration >= self.iterations;
+            if distance_squared < self.threshold * self.threshold
+                || (spent && distance_squared < WARP_CRACK * WARP_CRACK)
+            {
+                return motion.depth;
+            }
+            if spent {
+                break;
+            }
+            place = self.inside(source);
+            motion = self.motion_at(place);
+            iteration += 1;
+        }
+        DEPTH_FAR
+    }
+
+    fn fill_hole(&self, p: Vec2, bound: &MotionBound) -> f32 {
+        let [low, high] = [bound.low, bound.high];
+        let extremes = [low, [low[0], high[1]], high, [high[0], low[1]]];
+        extremes.map(|motion| self.motion_at(self.inside(p - Vec2::from(motion))).depth).into_iter().fold(0.0, f32::max)
+    }
+
+    fn warped_depth(&self, texel: UVec2) -> f32 {
+        let across = self.motions.size[0].div_ceil(self.tile);
+        let bound = &self.bounds[(texel.y / self.tile * across + texel.x / self.tile) as usize];
+        if !has_motion(bound) {
+            return DEPTH_FAR;
+        }
+        let p = texel.as_vec2() + 0.5;
+        let extent = Vec2::from(bound.high) - Vec2::from(bound.low);
+        let seeds = if extent.cmple(Vec2::splat(self.narrow)).all() { 1 } else { self.seeds };
+        let nearest = (0..seeds)
+            .map(|index| self.fixed_point_search(p, Vec2::from(bound.low) + extent * stratified(index, seeds)))
+            .fold(DEPTH_FAR, f32::max);
+        if self.fill && nearest == DEPTH_FAR {
+            self.fill_hole(p, bound)
+        } else {
+            nearest
+        }
+    }
+}
+
+/// Point `index` of `count` in the unit square. Twin of `stratified`.
+fn stratified(index: u32, count: u32) -> Vec2 {
+    let down = index.reverse_bits() as f32 / 4_294_967_296.0;
+    Vec2::new((index as f32 + 0.5) / count as f32, down + 0.5 / count as f32).min(Vec2::ONE)
+}
+
+/// The depth that the new view will have at each texel. Twin of `warp/search_depth`.
+pub fn search_depth(how: &Search<'_>) -> Vec<f32> {
+    let [width, height] = how.motions.size;
+    (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y))).map(|texel| how.warped_depth(texel)).collect()
+}

@@ -1,0 +1,88 @@
+// warp/search_depth: the depth that the new view will have at each texel, as far as the last frame shows it. From seeds
+// spread over the motions that can lead here, a fixed point of q = p - motion(q) is searched: the texel that moves to p. Of
+// several the nearest is in front (TOG 2018, 3.2, figure 3). Where none is found the last frame knows nothing: the hole is
+// far, which hides nothing, or (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018, 5.3).
+// Twin: culling/src/warp/twin.rs
+//
+// Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
+// searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
+// fixed point: the border is not smeared over what comes into view beside it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
+#include "motion.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint SEEDS = 4u;
+layout(constant_id = 1) const uint ITERATIONS = 5u;
+// How close to p a texel must come, in texels: above 0, at most 0.5.
+layout(constant_id = 2) const float THRESHOLD = 0.5;
+// Texels of the side of a tile that shares a bound.
+layout(constant_id = 3) const uint TILE = 4u;
+// A bound no wider than this, in texels, is sampled once: all that lies there moves alike.
+layout(constant_id = 4) const float NARROW = 1.0;
+layout(constant_id = 5) const bool FILL = false;
+
+layout(set = 0, binding = 0, scalar) readonly buffer Motions { TexelMotion items[]; } motions;
+layout(set = 0, binding = 1, scalar) readonly buffer TileBounds { MotionBound items[]; } bounds;
+layout(set = 0, binding = 2, scalar) writeonly buffer Warped { float items[]; } warped;
+layout(push_constant, scalar) uniform Push { uvec2 texels; uvec2 tiles; } push;
+
+vec2 inside(vec2 place) {
+    return clamp(place, vec2(0.5), vec2(push.texels) - 0.5);
+}
+
+TexelMotion motion_at(vec2 place) {
+    uvec2 texel = uvec2(place);
+    return motions.items[texel.y * push.texels.x + texel.x];
+}
+
+// Figure 3: the depth of what moves to p, searched from where the motion `seed` would come from.
+float fixed_point_search(vec2 p, vec2 seed) {
+    vec2 place = inside(p - seed);
+    TexelMotion motion = motion_at(place);
+    for (uint k = 1u; motion.depth > DEPTH_FAR; k++) {
+        vec2 source = p - motion.offset;
+        precise vec2 miss = place - source;
+        precise float distance_squared = miss.x * miss.x + miss.y * miss.y;
+        if (distance_squared < THRESHOLD * THRESHOLD) return motion.depth;
+        if (k >= ITERATIONS) return distance_squared < WARP_CRACK * WARP_CRACK ? motion.depth : DEPTH_FAR;
+        place = inside(source);
+        motion = motion_at(place);
+    }
+    return DEPTH_FAR;
+}
+
+// Point `index` of `count`, one in each of `count` strips across and, for powers of two, down (Hammersley).
+vec2 stratified(uint index, uint count) {
+    float down = float(bitfieldReverse(index)) / 4294967296.0;
+    precise vec2 point = vec2((float(index) + 0.5) / float(count), down + 0.5 / float(count));
+    return min(point, vec2(1.0));
+}
+
+float fill_hole(vec2 p, MotionBound bound) {
+    float left = max(motion_at(inside(p - bound.low)).depth, motion_at(inside(p - vec2(bound.low.x, bound.high.y))).depth);
+    float right = max(motion_at(inside(p - bound.high)).depth, motion_at(inside(p - vec2(bound.high.x, bound.low.y))).depth);
+    return max(left, right);
+}
+
+float warped_depth(uvec2 texel) {
+    uvec2 tile = texel / TILE;
+    MotionBound bound = bounds.items[tile.y * push.tiles.x + tile.x];
+    if (!has_motion(bound)) return DEPTH_FAR;
+    vec2 p = vec2(texel) + 0.5;
+    vec2 extent = bound.high - bound.low;
+    uint seeds = all(lessThanEqual(extent, vec2(NARROW))) ? 1u : SEEDS;
+    float nearest = DEPTH_FAR;
+    for (uint index = 0u; index < seeds; index++) {
+        precise vec2 seed = bound.low + extent * stratified(index, seeds);
+        nearest = max(nearest, fixed_point_search(p, seed));
+    }
+    return FILL && nearest == DEPTH_FAR ? fill_hole(p, bound) : nearest;
+}
+
+void main() {
+    uint index = invocation_index();
+    if (index >= push.texels.x * push.texels.y) return;
+    warped.items[index] = warped_depth(uvec2(index % push.texels.x, index / push.texels.x));
+}
