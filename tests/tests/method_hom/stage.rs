@@ -98,7 +98,10 @@ fn finer_maps_hide_no_less() {
     ];
     let mut gained = [0; 4];
     for (name, projection) in special_projections() {
-        let (input, kept) = input(&mut random, &gpu, projection, 1.0);
+        let (mut input, kept) = input(&mut random, &gpu, projection, 1.0);
+        // A near wall with holes here and there: what shows depends on how far beyond its region a map looks.
+        let wall = |random: &mut Random| if random.below(300) == 0 { 0.0 } else { 1.0 };
+        input.depth.fill_with(|| wall(&mut random));
         for (gained, (finer, coarser)) in gained.iter_mut().zip(pairs) {
             let (fine, coarse) = (run(&gpu, &input, &kept, finer), run(&gpu, &input, &kept, coarser));
             let worse = fine.iter().zip(&coarse).filter(|(fine, coarse)| fine > coarse).count();
@@ -106,5 +109,6 @@ fn finer_maps_hide_no_less() {
             *gained += fine.iter().zip(&coarse).filter(|(fine, coarse)| fine < coarse).count();
         }
     }
-    assert!(gained.iter().all(|gained| *gained > 10), "hardly any map was finer: {gained:?}");
+    println!("hidden by the finer map alone: {gained:?}");
+    assert!(gained.iter().all(|gained| *gained > 50), "hardly any map was finer: {gained:?}");
 }
