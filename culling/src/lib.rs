@@ -6,6 +6,7 @@
 pub mod boxes;
 pub mod eovc;
 mod error;
+pub mod farthest;
 pub mod frustum;
 pub mod hzb;
 mod method;

@@ -1,6 +1,7 @@
 //! The list of methods. One line a method.
 
-use crate::{eovc, frustum, hzb, none, reference, roc, Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
+use crate::{eovc, farthest, frustum, hzb, none, reference, roc};
+use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
 
 /// A method that can be chosen.
 #[derive(Debug)]
@@ -44,6 +45,14 @@ pub const METHODS: &[Entry] = &[
         guarantee: Guarantee::Exact,
         options: hzb::OPTIONS,
         make: hzb::make,
+    },
+    Entry {
+        id: "hom",
+        title: "hierarchical occlusion mapping with this frame's depth",
+        source: "Lee et al. 2018, figure 14c; Kim 2015, III.2",
+        guarantee: Guarantee::Exact,
+        options: farthest::hom::OPTIONS,
+        make: farthest::hom::make,
     },
     Entry {
         id: "roc",

@@ -131,6 +131,11 @@ impl Frame {
         self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
     }
 
+    /// Draws objects without showing them: their depth ahead of the draws that do. Not among the report's draws.
+    pub fn draw_unshown<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
+        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+    }
+
     /// Draws what shows no object: boxes that are tested. Not among the report's draws.
     pub fn test_boxes<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
         self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });

@@ -225,6 +225,11 @@ impl Target {
         Target { strictly_nearer: true, ..*self }
     }
 
+    /// The same depth, tested and written, and nothing else: what a depth prepass draws to.
+    pub fn depth_only(&self) -> Target {
+        Target { colour: None, item: None, ..*self }
+    }
+
     /// The same depth, tested and not written, and nothing else: what visibility tests draw to.
     pub fn test_only(&self) -> Target {
         Target { colour: None, item: None, depth_read_only: true, ..*self }

@@ -5,6 +5,71 @@
 use super::types;
 use crate::contract::*;
 
+/// Every drawn object's depth and nothing else, the same to the bit as that of draw/objects: a depth prepass.
+#[derive(Clone, Copy, Debug)]
+pub struct Depth {
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for Depth {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/depth",
+        modules: &[ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/depth.vert.spv") }],
+        bindings: &[BindingInfo {
+            name: "objects",
+            binding: 0,
+            kind: BindingKind::StorageBuffer,
+            access: Access::Read,
+        }],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+        ],
+        vertex_stride: 16,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = DepthPush { view: self.view };
+        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl GraphicsStage for Depth {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct DepthPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(DepthPush, view) == 0);
+    assert!(size_of::<DepthPush>() == 88);
+};
+
+/// One vertex of [`Depth`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DepthVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(DepthVertex, position) == 0);
+    assert!(std::mem::offset_of!(DepthVertex, normal_snorm16) == 12);
+    assert!(size_of::<DepthVertex>() == 16);
+};
+
 /// Every drawn object, Lambert-shaded, with early fragment tests.
 ///
 /// The colour. Occluded fragments stop before this shader.
@@ -65,7 +130,7 @@ const _: () = {
 pub struct ObjectsVertex {
     /// `position` in GLSL.
     pub position: [f32; 3],
-    /// Octahedral.
+    /// Octahedral; not used.
     pub normal_snorm16: [i16; 2],
 }
 
@@ -136,7 +201,7 @@ const _: () = {
 pub struct ObjectsAndFlagsVertex {
     /// `position` in GLSL.
     pub position: [f32; 3],
-    /// Octahedral.
+    /// Octahedral; not used.
     pub normal_snorm16: [i16; 2],
 }
 
@@ -206,7 +271,7 @@ const _: () = {
 pub struct ObjectsAndItemsVertex {
     /// `position` in GLSL.
     pub position: [f32; 3],
-    /// Octahedral.
+    /// Octahedral; not used.
     pub normal_snorm16: [i16; 2],
 }
 
@@ -282,7 +347,7 @@ const _: () = {
 pub struct ObjectsItemsAndFlagsVertex {
     /// `position` in GLSL.
     pub position: [f32; 3],
-    /// Octahedral.
+    /// Octahedral; not used.
     pub normal_snorm16: [i16; 2],
 }
 

@@ -5,6 +5,7 @@
 pub mod draw;
 pub mod engine;
 pub mod eovc;
+pub mod farthest;
 pub mod frustum;
 pub mod hzb;
 pub mod pack;
@@ -17,6 +18,7 @@ use crate::contract::{Stage, StageInfo};
 
 /// What is fixed about each stage, by name.
 pub const STAGES: &[&StageInfo] = &[
+    <draw::Depth as Stage>::INFO,
     <draw::Objects as Stage>::INFO,
     <draw::ObjectsAndFlags as Stage>::INFO,
     <draw::ObjectsAndItems as Stage>::INFO,
@@ -32,6 +34,9 @@ pub const STAGES: &[&StageInfo] = &[
     <eovc::QueryGroups as Stage>::INFO,
     <eovc::SelectOccludees as Stage>::INFO,
     <eovc::TestSingles as Stage>::INFO,
+    <farthest::DoubleSquares as Stage>::INFO,
+    <farthest::FillFromDepth as Stage>::INFO,
+    <farthest::TestBounds as Stage>::INFO,
     <frustum::TestBounds as Stage>::INFO,
     <hzb::ReduceDepth as Stage>::INFO,
     <hzb::ReduceLevels as Stage>::INFO,

@@ -11,6 +11,9 @@ pub const DEPTH_ROUNDING: f32 = 9.536743e-7;
 /// `CLIP_ERROR` in GLSL.
 pub const CLIP_ERROR: f32 = 1.9073486e-6;
 
+/// Texels of a row that one invocation writes: an invocation for each costs more than the work.
+pub const FARTHEST_STRIP: u32 = 16;
+
 /// `DEPTH_SLACK_PER_PIXEL` in GLSL.
 pub const DEPTH_SLACK_PER_PIXEL: f32 = 8.0;
 
@@ -196,6 +199,25 @@ const _: () = {
     assert!(std::mem::offset_of!(DrawCommand, vertex_offset) == 12);
     assert!(std::mem::offset_of!(DrawCommand, first_instance) == 16);
     assert!(size_of::<DrawCommand>() == 20);
+};
+
+/// What a farthest-depth map consists of.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct FarthestShape {
+    /// The base has a texel for 2^this pixels a side.
+    pub reduction: u32,
+    /// Mip levels after the base.
+    pub mip_levels: u32,
+    /// Square level n \>= 1 is entry squares_after + n of the table of levels.
+    pub squares_after: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(FarthestShape, reduction) == 0);
+    assert!(std::mem::offset_of!(FarthestShape, mip_levels) == 4);
+    assert!(std::mem::offset_of!(FarthestShape, squares_after) == 8);
+    assert!(size_of::<FarthestShape>() == 12);
 };
 
 /// Where a mesh lies in the shared index and vertex buffers.

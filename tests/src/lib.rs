@@ -2,12 +2,14 @@
 //!
 //! Laws return their faults, one line each, instead of panicking: so a test can plant an error and see it reported.
 
+pub mod confetti;
 pub mod device;
 pub mod footprints;
 pub mod golden;
 pub mod hazards;
 pub mod lab;
 pub mod laws;
+pub mod occludees;
 pub mod random;
 pub mod sessions;
 pub mod worlds;

@@ -183,6 +183,14 @@ impl World {
         }
     }
 
+    /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it.
+    pub fn draw_depth(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
+        for indirect in list.draws(self) {
+            let stage = draw::Depth { objects: self.objects.all(), view: view.gpu() };
+            f.draw_unshown(stage, indirect, &target.depth_only());
+        }
+    }
+
     /// Draws what a list holds, and sets the flag of each object of which a fragment passes the early tests: colour, depth
     /// and visibility in one pass (EOVC thesis III.2).
     pub fn draw_flagged(&self, f: &mut Frame, list: &DrawList, visible: BufferRef<u32>, view: &View, target: &Target) {

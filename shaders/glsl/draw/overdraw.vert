@@ -1,18 +1,4 @@
 // draw/overdraw: one count a shaded fragment, added up. For pictures, never in timed frames.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "transform.glsl"
-
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 normal_snorm16;    // octahedral; not used
-
-layout(set = 0, binding = 0, scalar) readonly buffer Objects { Object items[]; } objects;
-layout(push_constant, scalar) uniform Push { View view; } push;
-
-invariant gl_Position;
-
-void main() {
-    Object object = objects.items[gl_InstanceIndex];
-    gl_Position = clip_from_object(object, position, push.view.clip_from_relative, push.view.camera_high, push.view.camera_low);
-    gl_PointSize = 1.0;
-}
+#include "place.glsl"

@@ -1,63 +1,10 @@
 //! `hzb/reduce_depth` and `hzb/reduce_levels` against their twins and against brute force, at sizes that pyramids get wrong.
 
 use culling::hzb::{twin, Pyramid};
-use culling::World;
-use engine::{Gpu, Placement};
-use harness::worlds::{cube, shot, sized, Maker};
+use engine::Placement;
+use harness::confetti::{drawn, SIZES};
 use harness::{gpu, Random};
-use scenes::Projection;
 use shaders::types::PyramidLevel;
-use sightline::targets::Targets;
-
-const SIZES: [[u32; 2]; 22] = [
-    [1, 1],
-    [2, 1],
-    [1, 2],
-    [3, 1],
-    [1, 257],
-    [257, 1],
-    [2, 2],
-    [3, 3],
-    [7, 5],
-    [8, 8],
-    [9, 8],
-    [15, 17],
-    [16, 16],
-    [31, 33],
-    [63, 65],
-    [64, 64],
-    [65, 63],
-    [127, 129],
-    [161, 97],
-    [255, 257],
-    [513, 2],
-    [640, 359],
-];
-
-/// Draws small boxes everywhere, so that depths differ from pixel to pixel, and gives depth and pyramid as on the device.
-fn drawn(gpu: &Gpu, size: [u32; 2], seed: u64) -> (Vec<f32>, Vec<f32>) {
-    let mut maker = Maker::new("confetti");
-    let mut random = Random::new(seed);
-    let cube = maker.mesh(cube());
-    // One side is a pixel wide at the least; some pixels stay empty.
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
-    for _ in 0..(size[0] * size[1] / 6).clamp(3, 4000) {
-        let at = random.vector() * glam::DVec3::new(aspect, 1.0, 4.0) - glam::DVec3::Z * 5.0;
-        let pixel = 2.0 / f64::from(size[1]);
-        maker.place(cube, sized(at, glam::DVec3::splat(pixel * random.range(0.5, 5.0))));
-    }
-    let world = World::new(gpu, &maker.scene).unwrap();
-    let targets = Targets::new(gpu, size).unwrap();
-    let projection = Projection::Orthographic { half_height: 1.0, near: 0.0, far: 20.0 };
-    let view = culling::View::new(&shot(glam::DVec3::ZERO, glam::DVec3::NEG_Z, projection), size, 0, gpu.snap_px());
-    let pyramid = Pyramid::new(gpu, size).unwrap();
-    let mut f = gpu.frame();
-    f.clear(&targets.with_items());
-    world.draw_all(&mut f, &view, &targets.with_items());
-    pyramid.reduce(&mut f, &targets.with_items());
-    f.finish().unwrap();
-    (targets.read().unwrap().depth, pyramid.read().unwrap())
-}
 
 /// Where the levels of a pyramid lie, told from its definition alone.
 fn levels(size: [u32; 2]) -> (Vec<PyramidLevel>, u32) {
@@ -97,7 +44,12 @@ fn wrong_texels(depth: &[f32], size: [u32; 2], levels: &[PyramidLevel], texels: 
 fn pyramids_hold_the_farthest_depth_of_their_pixels_at_any_size() {
     let gpu = gpu();
     for (seed, size) in SIZES.into_iter().enumerate() {
-        let (depth, texels) = drawn(&gpu, size, seed as u64);
+        let (targets, depth) = drawn(&gpu, size, seed as u64);
+        let pyramid = Pyramid::new(&gpu, size).unwrap();
+        let mut f = gpu.frame();
+        pyramid.reduce(&mut f, &targets.with_items());
+        f.finish().unwrap();
+        let texels = pyramid.read().unwrap();
         let (levels, _) = levels(size);
         assert_eq!(wrong_texels(&depth, size, &levels, &texels), 0, "stage at {size:?}");
         let twin = twin::pyramid(&depth, size, &levels);
@@ -106,9 +58,6 @@ fn pyramids_hold_the_farthest_depth_of_their_pixels_at_any_size() {
             twin.iter().zip(&texels).all(|(twin, texel)| twin.to_bits() == texel.to_bits()),
             "stage and twin at {size:?}"
         );
-        if size[0] * size[1] > 60 {
-            assert!(depth.iter().any(|depth| *depth > 0.0), "nothing was drawn at {size:?}");
-        }
     }
 }
 

@@ -1,0 +1,31 @@
+// farthest/fill_from_depth: the base of a farthest-depth map from a depth buffer, at its size or reduced (Kim 2015, VI): the
+// farthest of the pixels that a texel stands for. Twin: culling/src/farthest/twin.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "grid.glsl"
+#include "farthest.glsl"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform texture2D depth;
+layout(set = 0, binding = 1, scalar) writeonly buffer Base { float items[]; } base;
+layout(push_constant, scalar) uniform Push { uvec2 size_px; uvec2 base_size; uint reduction; } push;
+
+float farthest_of(uvec2 texel) {
+    uvec2 first = texel << push.reduction;
+    uvec2 end = min((texel + 1u) << push.reduction, push.size_px);
+    float farthest = 1.0;
+    for (uint y = first.y; y < end.y; y++)
+        for (uint x = first.x; x < end.x; x++) farthest = min(farthest, texelFetch(depth, ivec2(x, y), 0).r);
+    return farthest;
+}
+
+void main() {
+    uint strips = strips_of(push.base_size.x);
+    uint strip = invocation_index();
+    if (strip >= strips * push.base_size.y) return;
+    uint y = strip / strips;
+    uint first = strip % strips * FARTHEST_STRIP;
+    uint end = min(first + FARTHEST_STRIP, push.base_size.x);
+    for (uint x = first; x < end; x++) base.items[y * push.base_size.x + x] = farthest_of(uvec2(x, y));
+}
