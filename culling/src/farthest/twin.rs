@@ -10,7 +10,7 @@ pub fn fill_from_depth(depth: &[f32], size_px: [u32; 2], reduction: u32) -> Vec<
     let [width, height] = size_px.map(|side| side.div_ceil(1 << reduction));
     let mut base = vec![f32::INFINITY; (width * height) as usize];
     for (pixel, depth) in (0..).zip(depth) {
-        let (x, y) = (pixel % size_px[0] >> reduction, pixel / size_px[0] >> reduction);
+        let (x, y) = ((pixel % size_px[0]) >> reduction, (pixel / size_px[0]) >> reduction);
         let texel = &mut base[(y * width + x) as usize];
         *texel = texel.min(*depth);
     }
