@@ -2,6 +2,8 @@
 
 #[path = "method_hom/maps.rs"]
 mod maps;
+#[path = "method_hom/planted.rs"]
+mod planted;
 #[path = "method_hom/stage.rs"]
 mod stage;
 
