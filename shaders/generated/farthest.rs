@@ -75,8 +75,8 @@ pub struct FillFromDepth {
     pub size_px: [u32; 2],
     /// `base_size` in GLSL.
     pub base_size: [u32; 2],
-    /// `reduction` in GLSL.
-    pub reduction: u32,
+    /// Specialization constants.
+    pub constants: FillFromDepthConstants,
 }
 
 impl Stage for FillFromDepth {
@@ -90,8 +90,8 @@ impl Stage for FillFromDepth {
             BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
             BindingInfo { name: "base", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 20,
-        constants: &[],
+        push_size: 16,
+        constants: &[ConstantInfo { name: "REDUCTION", id: 0 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -99,8 +99,13 @@ impl Stage for FillFromDepth {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = FillFromDepthPush { size_px: self.size_px, base_size: self.base_size, reduction: self.reduction };
-        BoundStage::new(Self::INFO, vec![self.depth.into(), self.base.into()], bytemuck::bytes_of(&push), vec![])
+        let push = FillFromDepthPush { size_px: self.size_px, base_size: self.base_size };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.depth.into(), self.base.into()],
+            bytemuck::bytes_of(&push),
+            vec![self.constants.reduction],
+        )
     }
 }
 
@@ -111,15 +116,27 @@ impl ComputeStage for FillFromDepth {}
 struct FillFromDepthPush {
     size_px: [u32; 2],
     base_size: [u32; 2],
-    reduction: u32,
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(FillFromDepthPush, size_px) == 0);
     assert!(std::mem::offset_of!(FillFromDepthPush, base_size) == 8);
-    assert!(std::mem::offset_of!(FillFromDepthPush, reduction) == 16);
-    assert!(size_of::<FillFromDepthPush>() == 20);
+    assert!(size_of::<FillFromDepthPush>() == 16);
 };
+
+/// Specialization constants of [`FillFromDepth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FillFromDepthConstants {
+    /// A texel stands for 2^this pixels a side. A constant, so that loops over pixels unroll: half the time.
+    pub reduction: u32,
+}
+
+impl Default for FillFromDepthConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { reduction: 0 }
+    }
+}
 
 /// Which objects in the view volume does a farthest-depth map not hide? An object is hidden if the
 /// nearest depth of its proxy lies behind the farthest depth within its image-space bound (Kim 2015, III.2; Lee et al. 2018, 5.2).

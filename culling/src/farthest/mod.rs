@@ -110,7 +110,7 @@ impl FarthestMap {
             base: self.base(),
             size_px: self.size_px,
             base_size: [width, height],
-            reduction: self.shape.reduction,
+            constants: farthest::FillFromDepthConstants { reduction: self.shape.reduction },
         };
         f.dispatch(stage, width.div_ceil(FARTHEST_STRIP) * height);
     }
