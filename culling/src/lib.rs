@@ -17,6 +17,7 @@ pub mod pack;
 pub mod reference;
 pub mod roc;
 pub mod warp;
+pub mod woc;
 pub mod world;
 
 pub use error::Error;

@@ -1,6 +1,6 @@
 //! The list of methods. One line a method.
 
-use crate::{eovc, farthest, frustum, hzb, none, reference, roc};
+use crate::{eovc, farthest, frustum, hzb, none, reference, roc, woc};
 use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
 
 /// A method that can be chosen.
@@ -53,6 +53,30 @@ pub const METHODS: &[Entry] = &[
         guarantee: Guarantee::Exact,
         options: farthest::hom::OPTIONS,
         make: farthest::hom::make,
+    },
+    Entry {
+        id: "woc",
+        title: "warping-based occlusion culling",
+        source: "Kim 2015, III-IV; Lee et al. 2018, 5",
+        guarantee: Guarantee::Approximate(woc::WARPED),
+        options: woc::OPTIONS,
+        make: woc::make,
+    },
+    Entry {
+        id: "awoc",
+        title: "approximate warping-based culling: holes are filled",
+        source: "Lee et al. 2018, 5.3",
+        guarantee: Guarantee::Approximate(woc::FILLED),
+        options: woc::OPTIONS,
+        make: woc::make_approximate,
+    },
+    Entry {
+        id: "woc-exact",
+        title: "warping-based culling, repaired against this frame's depth",
+        source: "Sightline; its second test is that of Haar & Aaltonen 2015",
+        guarantee: Guarantee::Exact,
+        options: woc::OPTIONS,
+        make: woc::make_exact,
     },
     Entry {
         id: "roc",

@@ -1,14 +1,14 @@
 //! One frame: recorded stage by stage, run, timed.
 
 use crate::gpu::{Gpu, Vulkan};
-use crate::image::Target;
+use crate::image::{Format, Target};
 use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
 use crate::timers::{Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
-use shaders::{Bound, BufferRef, ComputeStage, GraphicsStage};
+use shaders::{Bound, BufferRef, ComputeStage, GraphicsStage, ImageRef};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -154,6 +154,31 @@ impl Frame {
     /// Copies a buffer to another one at least as long.
     pub fn copy<T: Pod>(&mut self, label: &str, from: BufferRef<T>, to: BufferRef<T>) {
         self.recorder.push(label, Op::Copy { from: from.into(), to: to.into() });
+    }
+
+    /// Keeps the target's depth beyond the frame: a float a pixel, row by row from the top.
+    ///
+    /// # Panics
+    /// If the buffer has no room for it.
+    pub fn copy_depth(&mut self, label: &str, target: &Target, to: &Buffer<f32>) {
+        self.copy_image(label, target.depth, Format::Depth, target.size, to);
+    }
+
+    /// Keeps the target's item buffer beyond the frame: an object a pixel, row by row from the top; nothing if the target
+    /// has none.
+    ///
+    /// # Panics
+    /// If the buffer has no room for it.
+    pub fn copy_items(&mut self, label: &str, target: &Target, to: &Buffer<u32>) {
+        if let Some(items) = target.item {
+            self.copy_image(label, items, Format::Item, target.size, to);
+        }
+    }
+
+    fn copy_image<T: Pod>(&mut self, label: &str, from: ImageRef, format: Format, size: [u32; 2], to: &Buffer<T>) {
+        let texels = size[0] as usize * size[1] as usize;
+        assert!(to.len() >= texels, "{label}: {} words for {texels} texels", to.len());
+        self.recorder.push(label, Op::CopyImage { from, format, size, to: to.all().into() });
     }
 
     /// Notes that a stage was not needed.

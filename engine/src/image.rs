@@ -33,7 +33,7 @@ impl Format {
         }
     }
 
-    fn aspect(self) -> vk::ImageAspectFlags {
+    pub(crate) fn aspect(self) -> vk::ImageAspectFlags {
         if self == Format::Depth {
             vk::ImageAspectFlags::DEPTH
         } else {
@@ -94,7 +94,7 @@ impl Image {
 
     /// The image as a stage binds it.
     pub fn view(&self) -> ImageRef {
-        ImageRef { id: self.id, view: self.view.as_raw() }
+        ImageRef { id: self.id, view: self.view.as_raw(), image: self.raw.as_raw() }
     }
 
     /// What it holds.
@@ -109,7 +109,7 @@ impl Image {
 
     /// Reads the whole image, row by row from the top, now; the device must be idle (between frames).
     pub fn read(&self) -> Result<Vec<u8>> {
-        self.gpu.stage_from_image(self.raw, self.format.aspect(), self.size, self.format.texel_bytes())
+        self.gpu.stage_from_image(self.raw, self.format, self.size)
     }
 
     fn create(&mut self, vulkan: &Vulkan, name: &str) -> Result<()> {

@@ -8,7 +8,7 @@ use crate::image::Target;
 use crate::pipeline::{descriptor_type, DrawState, Pipeline};
 use crate::recorder::{IndexedIndirect, Op, Recorded};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
-use crate::transfer::full_barrier;
+use crate::transfer::{full_barrier, whole_image};
 use crate::{Error, Result};
 use ash::vk;
 use shaders::{Bound, BoundStage};
@@ -162,6 +162,15 @@ impl Recording<'_> {
                 let region = [vk::BufferCopy { src_offset, dst_offset, size }];
                 // SAFETY: the destination is at least as long, by `Frame::copy`'s contract.
                 unsafe { device.cmd_copy_buffer(self.commands, from, to, &region) };
+            }
+            Op::CopyImage { from, format, size, to } => {
+                let (to, offset, _) = range(to);
+                let region = [whole_image(*format, *size).buffer_offset(offset)];
+                let from = vk::Image::from_raw(from.image);
+                // SAFETY: images are always in the general layout; the buffer has room by `Frame::copy_depth`'s contract.
+                unsafe {
+                    device.cmd_copy_image_to_buffer(self.commands, from, vk::ImageLayout::GENERAL, to, &region);
+                }
             }
         }
         Ok(())

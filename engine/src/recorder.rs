@@ -1,8 +1,8 @@
 //! What a frame is before it becomes Vulkan: a list of stages with barriers between them. Plain data, readable as text.
 
 use crate::barriers::{Barrier, BarrierTracker, Point, Use};
-use crate::image::Target;
-use shaders::{Access, Bound, BoundStage, BufferRef, ResourceId};
+use crate::image::{Format, Target};
+use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
 
 /// How indices form primitives.
@@ -80,6 +80,17 @@ pub enum Op {
         /// The source.
         from: Bound,
         /// The destination, at least as long.
+        to: Bound,
+    },
+    /// All texels of an image to a buffer, row by row from the top.
+    CopyImage {
+        /// The source.
+        from: ImageRef,
+        /// What it holds.
+        format: Format,
+        /// Its width and height in pixels.
+        size: [u32; 2],
+        /// The destination, with room for all texels.
         to: Bound,
     },
 }
@@ -166,6 +177,7 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         Op::Clear { target } => format!("depth={}", name(target.depth.id)),
         Op::Fill { buffer, value } => format!("{}={value}", name(resource(buffer))),
         Op::Copy { from, to } => format!("{} to {}", name(resource(from)), name(resource(to))),
+        Op::CopyImage { from, to, .. } => format!("{} to {}", name(from.id), name(resource(to))),
     }
 }
 
@@ -198,6 +210,9 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
         Op::Fill { buffer, .. } => vec![Use::write(resource(buffer), Point::Transfer)],
         Op::Copy { from, to } => {
             vec![Use::read(resource(from), Point::Transfer), Use::write(resource(to), Point::Transfer)]
+        }
+        Op::CopyImage { from, to, .. } => {
+            vec![Use::read(from.id, Point::Transfer), Use::write(resource(to), Point::Transfer)]
         }
     }
 }

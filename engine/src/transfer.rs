@@ -2,6 +2,7 @@
 
 use crate::error::Named;
 use crate::gpu::{lock, Gpu, Vulkan};
+use crate::image::Format;
 use crate::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::Allocation;
@@ -80,27 +81,26 @@ impl Gpu {
         Ok(staging.bytes()?[..bytes].to_vec())
     }
 
-    pub(crate) fn stage_from_image(
-        &self,
-        from: vk::Image,
-        aspect: vk::ImageAspectFlags,
-        size: [u32; 2],
-        texel_bytes: usize,
-    ) -> Result<Vec<u8>> {
+    pub(crate) fn stage_from_image(&self, from: vk::Image, format: Format, size: [u32; 2]) -> Result<Vec<u8>> {
         let vulkan = self.vulkan()?;
-        let bytes = size[0] as usize * size[1] as usize * texel_bytes;
+        let bytes = size[0] as usize * size[1] as usize * format.texel_bytes();
         let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
         let to = staging.raw;
-        let layers =
-            vk::ImageSubresourceLayers { aspect_mask: aspect, mip_level: 0, base_array_layer: 0, layer_count: 1 };
-        let extent = vk::Extent3D { width: size[0], height: size[1], depth: 1 };
-        let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(extent);
+        let region = whole_image(format, size);
         vulkan.run_once(|device, commands| {
             // SAFETY: the image is in the general layout and alive through the wait; the buffer has room for it.
             unsafe { device.cmd_copy_image_to_buffer(commands, from, vk::ImageLayout::GENERAL, to, &[region]) };
         })?;
         Ok(staging.bytes()?[..bytes].to_vec())
     }
+}
+
+/// All texels of an image, tightly packed, at the start of a buffer.
+pub(crate) fn whole_image(format: Format, [width, height]: [u32; 2]) -> vk::BufferImageCopy {
+    let layers =
+        vk::ImageSubresourceLayers { aspect_mask: format.aspect(), mip_level: 0, base_array_layer: 0, layer_count: 1 };
+    let extent = vk::Extent3D { width, height, depth: 1 };
+    vk::BufferImageCopy::default().image_subresource(layers).image_extent(extent)
 }
 
 /// Everything before, before everything after: for the edges of submissions, where no tracker looks.

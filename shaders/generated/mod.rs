@@ -12,6 +12,7 @@ pub mod pack;
 pub mod roc;
 pub mod types;
 pub mod warp;
+pub mod woc;
 pub mod world;
 
 use crate::contract::{Stage, StageInfo};
@@ -54,8 +55,10 @@ pub const STAGES: &[&StageInfo] = &[
     <roc::TestRange as Stage>::INFO,
     <warp::BoundLevels as Stage>::INFO,
     <warp::BoundMotion as Stage>::INFO,
+    <warp::ErodeDepth as Stage>::INFO,
     <warp::MeasureMotion as Stage>::INFO,
     <warp::SearchDepth as Stage>::INFO,
     <warp::TightenBounds as Stage>::INFO,
+    <woc::ExcludeObjects as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

@@ -37,6 +37,9 @@ pub const WARP_CRACK: f32 = 1.0;
 /// bounds leave it out.
 pub const WARP_REACH: f32 = 1.5;
 
+/// Texels a side that an invocation of warp/erode_depth makes.
+pub const ERODE_SIDE: u32 = 4;
+
 /// Levels that one reduction writes: an 8x8 tile of its source becomes 4x4, 2x2 and 1 texels.
 pub const REDUCED_LEVELS: u32 = 3;
 

@@ -120,6 +120,59 @@ const _: () = {
     assert!(size_of::<BoundMotionPush>() == 16);
 };
 
+/// Each texel of a warped depth is given the farthest depth of itself and its eight neighbours (Kim 2015,
+/// IV.1): outlines that the warp has a texel wrong, depths taken from half a texel off on a slope, and lone texels that are
+/// too near, hide nothing any more. Twin: culling/src/warp/twin.rs
+///
+/// An invocation makes a block of 4x4 texels, of which each row of the source is read once.
+#[derive(Clone, Copy, Debug)]
+pub struct ErodeDepth {
+    /// `warped` in GLSL.
+    pub warped: BufferRef<f32>,
+    /// `eroded` in GLSL.
+    pub eroded: BufferRef<f32>,
+    /// `texels` in GLSL.
+    pub texels: [u32; 2],
+}
+
+impl Stage for ErodeDepth {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "warp/erode_depth",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/warp/erode_depth.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "warped", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "eroded", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 8,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ErodeDepthPush { texels: self.texels };
+        BoundStage::new(Self::INFO, vec![self.warped.into(), self.eroded.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for ErodeDepth {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ErodeDepthPush {
+    texels: [u32; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ErodeDepthPush, texels) == 0);
+    assert!(size_of::<ErodeDepthPush>() == 8);
+};
+
 /// Where does each pixel of the last frame go, and how deep is it then? Its depth is reprojected through
 /// what the camera did and, where objects move, what the pixel's object did (TOG 2018, 3.1). At reduced size the farthest
 /// pixel of each block stands for it, so that what is warped hides no more than what was there.
@@ -132,9 +185,9 @@ const _: () = {
 #[derive(Clone, Copy, Debug)]
 pub struct MeasureMotion {
     /// `depth` in GLSL.
-    pub depth: ImageRef,
-    /// `items` in GLSL.
-    pub items: ImageRef,
+    pub depth: BufferRef<f32>,
+    /// By pixel: its object.
+    pub items: BufferRef<u32>,
     /// By object: 1 + its reprojection; 0 for objects that cannot move.
     pub slots: BufferRef<u32>,
     /// Of each object that can move: what it and the camera did.
@@ -159,8 +212,8 @@ impl Stage for MeasureMotion {
             spirv: include_bytes!("spirv/warp/measure_motion.comp.spv"),
         }],
         bindings: &[
-            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
-            BindingInfo { name: "items", binding: 1, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "items", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "slots", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "reprojections", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "motions", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },

@@ -46,6 +46,8 @@ pub struct ImageRef {
     pub id: ResourceId,
     /// The driver's handle of the view.
     pub view: u64,
+    /// The driver's handle of the image itself, for copies.
+    pub image: u64,
 }
 
 /// What a stage does with a binding, from its `readonly` and `writeonly` qualifiers.

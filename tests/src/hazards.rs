@@ -63,6 +63,9 @@ fn touches(op: &Op) -> Vec<Touch> {
         Op::Copy { from, to } => {
             vec![touch(id(from), Point::Transfer, true, false), touch(id(to), Point::Transfer, false, true)]
         }
+        Op::CopyImage { from, to, .. } => {
+            vec![touch(from.id, Point::Transfer, true, false), touch(id(to), Point::Transfer, false, true)]
+        }
     }
 }
 

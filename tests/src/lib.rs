@@ -2,6 +2,7 @@
 //!
 //! Laws return their faults, one line each, instead of panicking: so a test can plant an error and see it reported.
 
+pub mod approximate;
 pub mod confetti;
 pub mod device;
 pub mod footprints;

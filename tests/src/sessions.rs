@@ -26,18 +26,23 @@ pub const RUNS: [(&str, f64, &str); 11] = [
 ///
 /// # Panics
 /// If there is no such scene or path.
-pub fn open(gpu: &Gpu, (scene, scale, path): (&str, f64, &str), frames: usize) -> Session {
+pub fn open(gpu: &Gpu, run: (&str, f64, &str), frames: usize) -> Session {
+    opened(gpu, run, frames, true)
+}
+
+/// The same, but the camera moves at speed 1 as far as the frames reach.
+///
+/// # Panics
+/// If there is no such scene or path.
+pub fn open_at_speed_one(gpu: &Gpu, run: (&str, f64, &str), frames: usize) -> Session {
+    opened(gpu, run, frames, false)
+}
+
+fn opened(gpu: &Gpu, (scene, scale, path): (&str, f64, &str), frames: usize, whole_path: bool) -> Session {
     let path = Some(path.to_owned());
     let size = [320, 180];
-    let options = SessionOptions {
-        scene: scene.into(),
-        scale,
-        path,
-        whole_path: true,
-        frames,
-        size,
-        ..SessionOptions::default()
-    };
+    let options =
+        SessionOptions { scene: scene.into(), scale, path, whole_path, frames, size, ..SessionOptions::default() };
     Session::on(gpu, options).unwrap_or_else(|error| panic!("{scene}: {error:#}"))
 }
 

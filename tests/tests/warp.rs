@@ -2,6 +2,7 @@
 
 use culling::warp::{LastFrame, Settings, Warp};
 use culling::View;
+use engine::{Buffer, Placement};
 use glam::DVec3;
 use harness::Lab;
 use scenes::Shot;
@@ -35,15 +36,19 @@ fn warp(lab: &mut Lab, shots: [&Shot; 2], settings: Settings) -> Pair {
     let truth = lab.truth(shots[0]);
     let view = lab.look(shots[0], 0);
     let last = LastFrame::of(&lab.world, &view);
-    let view = lab.look(shots[1], 1);
     let mut warp = Warp::new(&lab.gpu, &lab.world, lab.size, settings).unwrap();
-    let target = lab.targets.with_items();
     // Only worlds in which something moves need the item buffer.
-    let items = if lab.world.moving().len() > 0 { target.item } else { None };
+    let target = if lab.world.moving().len() > 0 { lab.targets.with_items() } else { lab.targets.timed() };
     let mut f = lab.gpu.frame();
-    warp.frame(&mut f, &lab.world, &last, &view, target.depth, items).unwrap();
+    warp.keep(&mut f, &lab.world, &view, &target);
     f.finish().unwrap();
-    let warped = warp.read_depth().unwrap();
+    let view = lab.look(shots[1], 1);
+    let [width, height] = warp.texels();
+    let warped = Buffer::new(&lab.gpu, "warped", (width * height) as usize, Placement::Storage).unwrap();
+    let mut f = lab.gpu.frame();
+    warp.frame(&mut f, &lab.world, &view, warped.all()).unwrap();
+    f.finish().unwrap();
+    let warped = warped.read().unwrap();
     let images = truth.images();
     Pair { last, view, depth: images.depth.clone(), items: images.items.clone(), warp, warped }
 }

@@ -5,10 +5,12 @@ use crate::png_out::{DepthScale, Picture};
 use crate::run::Contender;
 use crate::session::Session;
 use anyhow::{bail, Context, Result};
-use culling::warp::{LastFrame, Settings, Warp};
-use culling::View;
-use engine::FrameReport;
+use culling::warp::{Settings, Warp};
+use engine::{Buffer, FrameReport, Placement};
 use shaders::types::TexelMotion;
+
+/// Runs of a warp; the last is reported.
+const RUNS: usize = 5;
 
 const HOLE: [u8; 3] = [255, 150, 0];
 const TOO_NEAR: [u8; 3] = [255, 40, 40];
@@ -39,13 +41,21 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
     };
     let last_view = session.look(before)?;
     contender.run(session, &last_view, true)?;
-    let last = LastFrame::of(&session.world, &last_view);
+    let mut warp = Warp::new(&session.gpu, &session.world, last_view.size, settings).context("depth warping")?;
+    let mut f = session.gpu.frame();
+    warp.keep(&mut f, &session.world, &last_view, &session.targets.with_items());
+    f.finish().context("keeping a frame's depth")?;
     let view = session.look(frame)?;
-    let mut warp = Warp::new(&session.gpu, &session.world, view.size, settings).context("depth warping")?;
-    // Twice, as the first use of a stage includes compiling it.
-    run(session, &mut warp, &last, &view)?;
-    let report = run(session, &mut warp, &last, &view)?;
-    let (motions, depth) = (warp.read_motions()?, warp.read_depth()?);
+    let [width, height] = warp.texels();
+    let warped = Buffer::new(&session.gpu, "warped", (width * height) as usize, Placement::Storage)?;
+    // Several times, as the first use of a stage includes compiling it.
+    let mut report = FrameReport::default();
+    for _ in 0..RUNS {
+        let mut f = session.gpu.frame();
+        warp.frame(&mut f, &session.world, &view, warped.all())?;
+        report = f.finish().context("depth warping")?;
+    }
+    let (motions, depth) = (warp.read_motions()?, warped.read()?);
     contender.run(session, &view, true)?;
     let images = session.targets.read()?;
     let scale = DepthScale::of(&images.depth);
@@ -59,13 +69,6 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
         scale,
         stages: report.stages.into_iter().map(|stage| (stage.label, stage.ms)).collect(),
     })
-}
-
-fn run(session: &Session, warp: &mut Warp, last: &LastFrame, view: &View) -> Result<FrameReport> {
-    let target = session.targets.with_items();
-    let mut f = session.gpu.frame();
-    warp.frame(&mut f, &session.world, last, view, target.depth, target.item)?;
-    f.finish().context("depth warping")
 }
 
 /// What a warped texel stands for: the farthest depth of its pixels.

@@ -9,12 +9,12 @@ mod settings;
 pub mod twin;
 
 pub use reprojection::{reprojections, LastFrame, Reprojections};
-pub use settings::{Settings, OPTIONS};
+pub use settings::{Settings, ITERATIONS, NARROW, OPTIONS, SEEDS, STEPS, THRESHOLD, TILE};
 
 use crate::{Result, View, World};
-use engine::{Buffer, Format, Frame, Gpu, Image, Placement};
-use shaders::types::{MotionBound, PyramidLevel, Reprojection, TexelMotion, REDUCED_LEVELS};
-use shaders::{warp, BufferRef, ImageRef, Stage};
+use engine::{Buffer, Frame, Gpu, Placement, Target};
+use shaders::types::{MotionBound, PyramidLevel, Reprojection, TexelMotion, ERODE_SIDE, REDUCED_LEVELS};
+use shaders::{warp, BufferRef, Stage};
 
 /// The last frame's depth, brought to this frame's view.
 pub struct Warp {
@@ -26,12 +26,13 @@ pub struct Warp {
     coarsest: u32,
     slots: Buffer<u32>,
     reprojections: Buffer<Reprojection>,
-    no_items: Image,
+    depth: Buffer<f32>,
+    items: Buffer<u32>,
+    last: Option<LastFrame>,
     levels: Buffer<PyramidLevel>,
     motions: Buffer<TexelMotion>,
     pyramid: Buffer<MotionBound>,
     bounds: Buffer<MotionBound>,
-    warped: Buffer<f32>,
 }
 
 impl Warp {
@@ -45,16 +46,18 @@ impl Warp {
         let (layout, coarsest) = crate::hzb::layout(texels);
         let area = |[width, height]: [u32; 2]| (width * height) as usize;
         let pyramid_texels = layout.iter().map(|level| area([level.width, level.height])).sum();
+        let dynamic = world.moving().len() > 0;
         let bounds = |name: &str, len: usize| Buffer::new(gpu, name, len, Placement::Storage);
         Ok(Warp {
             slots: Buffer::with_data(gpu, "warp.slots", &slots(world), Placement::Storage)?,
             reprojections: Buffer::new(gpu, "warp.reprojections", world.moving().len(), Placement::Upload)?,
-            no_items: Image::new(gpu, "warp.no_items", Format::Item, [1, 1])?,
+            depth: Buffer::new(gpu, "warp.depth", area(size), Placement::Storage)?,
+            items: Buffer::new(gpu, "warp.items", if dynamic { area(size) } else { 1 }, Placement::Storage)?,
+            last: None,
             levels: Buffer::with_data(gpu, "warp.levels", &layout, Placement::Storage)?,
             motions: Buffer::new(gpu, "warp.motions", area(texels), Placement::Storage)?,
             pyramid: bounds("warp.pyramid", pyramid_texels)?,
             bounds: bounds("warp.bounds", area(tiles))?,
-            warped: Buffer::new(gpu, "warp.warped", area(texels), Placement::Storage)?,
             settings,
             size,
             texels,
@@ -64,45 +67,57 @@ impl Warp {
         })
     }
 
-    /// Warps the depth of `last` to `view`. `depth` and `items` hold what `last` drew; items may be left out if nothing in
-    /// the world moves. Gives the depth of each texel, row by row from the top, of a picture of [`Warp::texels`].
+    /// Keeps what a frame drew, for the next one to be warped from: the last step of a frame. The depth is copied, because
+    /// targets belong to the program, which may draw something else before the next frame.
+    ///
+    /// # Panics
+    /// If the target has another size than the warp, or if something moves and it has no item buffer.
+    pub fn keep(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+        assert_eq!(target.size, self.size, "a warp keeps the size of its pictures");
+        f.copy_depth("warp/keep_depth", target, &self.depth);
+        if world.moving().len() > 0 {
+            assert!(target.item.is_some(), "pixels of moving objects are warped by the item buffer");
+            f.copy_items("warp/keep_items", target, &self.items);
+        } else {
+            f.skip("warp/keep_items", "no dynamic objects");
+        }
+        self.last = Some(LastFrame::of(world, view));
+    }
+
+    /// True if there is a frame to warp from.
+    pub fn has_last(&self) -> bool {
+        self.last.is_some()
+    }
+
+    /// Forgets the last frame.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// Warps the last frame's depth to `view`. Writes the depth of each texel, row by row from the top, of a picture of
+    /// [`Warp::texels`].
     ///
     /// # Errors
     /// The device.
     ///
     /// # Panics
-    /// If a view has another size, or if something moves and there are no items.
-    pub fn frame(
-        &mut self,
-        f: &mut Frame,
-        world: &World,
-        last: &LastFrame,
-        view: &View,
-        depth: ImageRef,
-        items: Option<ImageRef>,
-    ) -> Result<BufferRef<f32>> {
-        assert_eq!([last.view().size, view.size], [self.size; 2], "a warp keeps the size of its pictures");
+    /// If the view has another size than the warp, or if there is no last frame.
+    pub fn frame(&mut self, f: &mut Frame, world: &World, view: &View, warped: BufferRef<f32>) -> Result<()> {
+        assert_eq!(view.size, self.size, "a warp keeps the size of its pictures");
+        let last = self.last.as_ref().expect("a frame was kept before the first is warped");
         let Reprojections { camera, moving } = reprojections(last, world, view);
         self.reprojections.write(&moving)?;
-        self.measure_motion(f, camera, !moving.is_empty(), depth, items); // 1. where each pixel of the last frame goes
+        self.measure_motion(f, camera, !moving.is_empty()); // 1. where each pixel of the last frame goes
         self.bound_motion(f); // 2. the least and greatest motion of each region
         self.tighten_bounds(f); // 3. where each tile's source can be
-        self.search_depth(f); // 4. what moves here, and the nearest of it
-        Ok(self.warped.all())
+        self.search_depth(f, warped); // 4. what moves here, and the nearest of it
+        Ok(())
     }
 
-    fn measure_motion(
-        &self,
-        f: &mut Frame,
-        camera: Reprojection,
-        dynamic: bool,
-        depth: ImageRef,
-        items: Option<ImageRef>,
-    ) {
-        assert!(items.is_some() || !dynamic, "pixels of moving objects are warped by the item buffer");
+    fn measure_motion(&self, f: &mut Frame, camera: Reprojection, dynamic: bool) {
         let stage = warp::MeasureMotion {
-            depth,
-            items: items.unwrap_or(self.no_items.view()),
+            depth: self.depth.all(),
+            items: self.items.all(),
             slots: self.slots.all(),
             reprojections: self.reprojections.all(),
             motions: self.motions.all(),
@@ -143,17 +158,23 @@ impl Warp {
         f.dispatch(stage, self.tiles[0] * self.tiles[1]);
     }
 
-    fn search_depth(&self, f: &mut Frame) {
+    fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>) {
         let Settings { seeds, iterations, threshold, tile, narrow, fill, .. } = self.settings;
         let stage = warp::SearchDepth {
             motions: self.motions.all(),
             bounds: self.bounds.all(),
-            warped: self.warped.all(),
+            warped,
             texels: self.texels,
             tiles: self.tiles,
             constants: warp::SearchDepthConstants { seeds, iterations, threshold, tile, narrow, fill },
         };
         f.dispatch(stage, self.texels[0] * self.texels[1]);
+    }
+
+    /// Gives each texel of a warped depth the farthest depth of itself and its eight neighbours (Kim 2015, IV.1).
+    pub fn erode(&self, f: &mut Frame, warped: BufferRef<f32>, eroded: BufferRef<f32>) {
+        let [across, down] = self.texels.map(|side| side.div_ceil(ERODE_SIDE));
+        f.dispatch(warp::ErodeDepth { warped, eroded, texels: self.texels }, across * down);
     }
 
     /// Notes that a frame needs no warp.
@@ -187,11 +208,6 @@ impl Warp {
     /// The search bound of each tile, read back; for tests.
     pub fn read_bounds(&self) -> Result<Vec<MotionBound>> {
         Ok(self.bounds.read()?)
-    }
-
-    /// The warped depth, read back; for pictures and tests.
-    pub fn read_depth(&self) -> Result<Vec<f32>> {
-        Ok(self.warped.read()?)
     }
 }
 

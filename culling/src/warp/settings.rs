@@ -1,48 +1,58 @@
 //! What can be set about depth warping.
 
+use crate::farthest::hom::SIZE_OPTION;
 use crate::{OptionInfo, Options};
 
-/// Options of every method that warps. A method lists those it has beside its own.
-pub const OPTIONS: &[OptionInfo] = &[
-    OptionInfo {
-        name: "reduction",
-        default: "1",
-        values: "1|2|4",
-        help: "pixels of a warped texel's side; its depth is that of its farthest pixel",
-    },
-    OptionInfo { name: "seeds", default: "4", values: "1..=64", help: "seeds of the search at each texel (N)" },
-    OptionInfo { name: "iterations", default: "5", values: "1..=16", help: "iterations from each seed (T)" },
-    OptionInfo {
-        name: "threshold",
-        default: "0.5",
-        values: "0.125|0.25|0.5",
-        help: "how close to its texel a source must come, in texels",
-    },
-    OptionInfo {
-        name: "steps",
-        default: "3",
-        values: "0..=8",
-        help: "tightening steps of the search bound; 0 takes the bound of all motions",
-    },
-    OptionInfo {
-        name: "tile",
-        default: "4",
-        values: "1|2|4|8|16",
-        help: "texels of the side of a tile that shares a search bound; 1 is the paper's",
-    },
-    OptionInfo {
-        name: "narrow",
-        default: "1",
-        values: "0|0.5|1|2",
-        help: "width in texels up to which a bound is sampled once; 0 samples all alike",
-    },
-    OptionInfo {
-        name: "fill",
-        default: "false",
-        values: "true|false",
-        help: "fill holes from the extremes of the search bound (AWOC), instead of leaving them far",
-    },
-];
+/// Seeds of the search.
+pub const SEEDS: OptionInfo =
+    OptionInfo { name: "seeds", default: "4", values: "1..=64", help: "seeds of the search at each texel (N)" };
+
+/// Iterations of the search.
+pub const ITERATIONS: OptionInfo =
+    OptionInfo { name: "iterations", default: "5", values: "1..=16", help: "iterations from each seed (T)" };
+
+/// How close a source must come.
+pub const THRESHOLD: OptionInfo = OptionInfo {
+    name: "threshold",
+    default: "0.5",
+    values: "0.125|0.25|0.5",
+    help: "how close to its texel a source must come, in texels",
+};
+
+/// Tightening steps.
+pub const STEPS: OptionInfo = OptionInfo {
+    name: "steps",
+    default: "3",
+    values: "0..=8",
+    help: "tightening steps of the search bound; 0 takes the bound of all motions",
+};
+
+/// Texels that share a search bound.
+pub const TILE: OptionInfo = OptionInfo {
+    name: "tile",
+    default: "4",
+    values: "1|2|4|8|16",
+    help: "texels of the side of a tile that shares a search bound; 1 is the paper's",
+};
+
+/// Which bounds are sampled once.
+pub const NARROW: OptionInfo = OptionInfo {
+    name: "narrow",
+    default: "1",
+    values: "0|0.5|1|2",
+    help: "width in texels up to which a bound is sampled once; 0 samples all alike",
+};
+
+/// Filling of holes.
+const FILL: OptionInfo = OptionInfo {
+    name: "fill",
+    default: "false",
+    values: "true|false",
+    help: "fill holes from the extremes of the search bound (AWOC), instead of leaving them far",
+};
+
+/// Options of a warp on its own. Methods list those they have among their own, and fill holes or do not.
+pub const OPTIONS: &[OptionInfo] = &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, FILL];
 
 /// The same, read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,18 +76,18 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Reads the options of a method that has [`OPTIONS`] among its own.
+    /// Reads the options of a method that has [`OPTIONS`] among its own; without `fill`, holes stay far.
     pub fn of(options: &Options) -> Self {
         let fraction = |name: &str| options.text(name).parse().unwrap_or(0.0);
         Settings {
-            reduction: options.number("reduction"),
+            reduction: options.number(SIZE_OPTION.name),
             seeds: options.number("seeds"),
             iterations: options.number("iterations"),
             threshold: fraction("threshold"),
             steps: options.number("steps"),
             tile: options.number("tile"),
             narrow: fraction("narrow"),
-            fill: options.flag("fill"),
+            fill: options.flag(FILL.name),
         }
     }
 }

@@ -310,3 +310,14 @@ pub fn search_depth(how: &Search<'_>) -> Vec<f32> {
     let [width, height] = how.motions.size;
     (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y))).map(|texel| how.warped_depth(texel)).collect()
 }
+
+/// The farthest depth of each texel and its eight neighbours. Twin of `warp/erode_depth`.
+pub fn erode_depth(warped: Grid<'_, f32>) -> Vec<f32> {
+    let [width, height] = warped.size;
+    let farthest = |x: u32, y: u32| {
+        let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
+        let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
+        rows.flat_map(|y| columns.clone().map(move |x| warped.at(x, y))).fold(f32::INFINITY, f32::min)
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| farthest(x, y)).collect()
+}

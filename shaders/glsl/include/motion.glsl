@@ -31,6 +31,9 @@ const float WARP_CRACK = 1.0;
 // bounds leave it out.
 const float WARP_REACH = 1.5;
 
+// Texels a side that an invocation of warp/erode_depth makes.
+const uint ERODE_SIDE = 4u;
+
 MotionBound no_motion() {
     return MotionBound(vec2(3.0e38), vec2(-3.0e38));
 }

@@ -9,7 +9,6 @@
 // 41u of half the picture's side, 0.002 pixels at 1280.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #include "grid.glsl"
 #include "motion.glsl"
 
@@ -19,8 +18,9 @@ layout(constant_id = 0) const bool DYNAMIC = false;
 // Pixels of a texel's side.
 layout(constant_id = 1) const uint REDUCTION = 1u;
 
-layout(set = 0, binding = 0) uniform texture2D depth;
-layout(set = 0, binding = 1) uniform utexture2D items;
+layout(set = 0, binding = 0, scalar) readonly buffer Depth { float items[]; } depth;
+// By pixel: its object.
+layout(set = 0, binding = 1, scalar) readonly buffer Items { uint items[]; } items;
 // By object: 1 + its reprojection; 0 for objects that cannot move.
 layout(set = 0, binding = 2, scalar) readonly buffer Slots { uint items[]; } slots;
 // Of each object that can move: what it and the camera did.
@@ -29,7 +29,7 @@ layout(set = 0, binding = 4, scalar) writeonly buffer Motions { TexelMotion item
 layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 size_px; uvec2 texels; } push;
 
 float depth_at(uvec2 pixel) {
-    return texelFetch(depth, ivec2(pixel), 0).r;
+    return depth.items[pixel.y * push.size_px.x + pixel.x];
 }
 
 // The first pixel of the block, in reading order, that is as far as any; `farthest` is its depth.
@@ -54,7 +54,7 @@ uvec2 farthest_pixel(uvec2 texel, out float farthest) {
 TexelMotion moved(uvec2 pixel, float here) {
     mat4 m = push.camera.clip_from_last;
     if (DYNAMIC) {
-        uint slot = slots.items[texelFetch(items, ivec2(pixel), 0).r];
+        uint slot = slots.items[items.items[pixel.y * push.size_px.x + pixel.x]];
         if (slot != 0u) m = reprojections.items[slot - 1u].clip_from_last;
     }
     vec2 size = vec2(push.size_px);

@@ -156,7 +156,9 @@ fn a_skipped_warp_names_every_stage() {
     let report = f.finish().unwrap();
     let mut skipped: Vec<_> = report.skips.iter().map(|skip| skip.label.as_str()).collect();
     skipped.sort_unstable();
-    let stages = shaders::STAGES.iter().map(|stage| stage.name).filter(|name| name.starts_with("warp/"));
+    // Erosion is the occlusion map's, which asks for it or does not.
+    let own = |name: &&str| name.starts_with("warp/") && *name != "warp/erode_depth";
+    let stages = shaders::STAGES.iter().map(|stage| stage.name).filter(own);
     assert!(stages.eq(skipped));
 }
 

@@ -1,0 +1,183 @@
+//! `woc`: warping-based occlusion culling (Kim 2015, "Efficient occlusion culling with depth warping"; Lee et al. 2018,
+//! section 5), and its kin: `awoc`, which fills the holes of the warp, and `woc-exact`, which repairs what the warp got wrong.
+//!
+//! All that the last frame saw is an occluder of this one, as the depth it left, warped to the new view: none is chosen, and
+//! none is drawn.
+
+mod map;
+mod options;
+pub mod twin;
+
+pub use options::OPTIONS;
+
+use crate::farthest::hom;
+use crate::pack::DrawList;
+use crate::warp::Settings;
+use crate::world::Still;
+use crate::{Method, Result, Setup, View, World};
+use engine::{Buffer, Frame, Gpu, Placement, Target};
+use map::{OcclusionMap, Recipe};
+use shaders::{frustum, woc, Stage};
+
+/// Why `woc` may miss objects.
+pub const WARPED: &str =
+    "occluders are the last frame's depth, warped: where that is wrong, objects appear a frame late";
+/// Why `awoc` may miss objects.
+pub const FILLED: &str =
+    "as woc, and what the last frame did not see is taken to be as near as what moves most like it";
+
+/// What a method does about what the last frame did not see, and about what the warp got wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Holes are far: they hide nothing.
+    Conservative,
+    /// Holes are filled.
+    Approximate,
+    /// Holes are far, and what was culled is tested again against the depth of what was drawn.
+    Exact,
+}
+
+/// After the camera stops: the frame it stopped in may have missed objects. The next is tested against its depth, in which
+/// they hide nothing, and draws all that shows; the one after is tested against the full depth, and so are all others.
+const SETTLED_AFTER: u32 = 3;
+
+struct Woc {
+    gpu: Gpu,
+    kind: Kind,
+    recipe: Recipe,
+    map: Option<OcclusionMap>,
+    kept: Buffer<u32>,
+    visible: Buffer<u32>,
+    rejected: Buffer<u32>,
+    newly: Buffer<u32>,
+    list: DrawList,
+    late: DrawList,
+    still: Still,
+}
+
+/// Makes `woc`.
+pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    Ok(Box::new(Woc::new(setup, Kind::Conservative)?))
+}
+
+/// Makes `awoc`.
+pub fn make_approximate(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    Ok(Box::new(Woc::new(setup, Kind::Approximate)?))
+}
+
+/// Makes `woc-exact`.
+pub fn make_exact(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    Ok(Box::new(Woc::new(setup, Kind::Exact)?))
+}
+
+impl Method for Woc {
+    fn needs_items(&self, world: &World, _view: &View) -> bool {
+        world.moving().len() > 0
+    }
+
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        let map = OcclusionMap::sized(&mut self.map, &self.gpu, world, target.size, self.recipe)?;
+        world.update(f);
+        f.clear(target);
+        if self.still.holds(world, view) {
+            self.same_again(f, world, view, target);
+            return Ok(());
+        }
+        let object_count = world.len() as u32;
+        let (kept, visible) = (self.kept.all(), self.visible.all());
+        let frustum = frustum::TestBounds { bounds: world.bounds(), kept, view: view.cull(), object_count };
+        f.dispatch(frustum, object_count); // 1. view-frustum culling
+
+        let predicted = map.has_seen();
+        if predicted {
+            map.predict(f, world, view)?; // 2. the depth that the last frame says this one will have
+            map.test(f, world, view, kept, visible); // 3. who lies behind it everywhere
+        } else {
+            map.skip_first(f);
+        }
+        self.list.pack(f, world, if predicted { visible } else { kept }); // 4. the others, in object order
+        world.draw(f, &self.list, view, target); // 5. draw them
+
+        if self.kind == Kind::Exact {
+            self.repair(f, predicted, world, view, target); // 6. and what was culled by mistake
+        }
+        if let Some(map) = &mut self.map {
+            map.keep(f, world, view, target); // 7. this is the next one's last frame
+        }
+        Ok(())
+    }
+
+    fn forget(&mut self) -> Result<()> {
+        self.still.forget();
+        if let Some(map) = &mut self.map {
+            map.forget();
+        }
+        Ok(())
+    }
+}
+
+impl Woc {
+    fn new(setup: &Setup<'_>, kind: Kind) -> Result<Self> {
+        let (gpu, world) = (setup.gpu, setup.world);
+        let flags = |name: &str| Buffer::new(gpu, &format!("woc.{name}"), world.len(), Placement::Storage);
+        let settings = Settings { fill: kind == Kind::Approximate, ..Settings::of(setup.options) };
+        let erodes = setup.options.flag(options::ERODE.name);
+        Ok(Woc {
+            gpu: gpu.clone(),
+            kind,
+            recipe: Recipe { settings, kind: hom::map_kind(setup.options), erodes },
+            map: None,
+            kept: flags("kept")?,
+            visible: flags("visible")?,
+            rejected: flags("rejected")?,
+            newly: flags("newly")?,
+            list: DrawList::new(gpu, "woc.list", world)?,
+            late: DrawList::new(gpu, "woc.late", world)?,
+            still: Still::new(setup.options).settled_after(SETTLED_AFTER),
+        })
+    }
+
+    /// What the predicted depth hid is tested once more, against the real depth of what was drawn, and drawn if that does not
+    /// hide it: no visible object is missing then, however wrong the warp was.
+    fn repair(&self, f: &mut Frame, predicted: bool, world: &World, view: &View, target: &Target) {
+        f.part("repair");
+        match &self.map {
+            Some(map) if predicted => {
+                let (rejected, object_count) = (self.rejected.all(), world.len() as u32);
+                let (objects, excluded) = (self.kept.all(), self.visible.all());
+                f.dispatch(woc::ExcludeObjects { objects, excluded, remaining: rejected, object_count }, object_count);
+                map.observe(f, target);
+                map.test(f, world, view, rejected, self.newly.all());
+                self.late.pack(f, world, self.newly.all());
+                world.draw(f, &self.late, view, target);
+            }
+            _ => self.skip_repair(f, "nothing was rejected"),
+        }
+        f.part("");
+    }
+
+    /// Camera and objects unchanged: the last frame's lists hold, and so does the depth kept of it.
+    fn same_again(&self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+        f.skip(frustum::TestBounds::INFO.name, Still::REASON);
+        if let Some(map) = &self.map {
+            map.skip(f, Still::REASON);
+        }
+        self.list.skip_packing(f, Still::REASON);
+        world.draw(f, &self.list, view, target);
+        if self.kind == Kind::Exact {
+            f.part("repair");
+            self.skip_repair(f, Still::REASON);
+            world.draw(f, &self.late, view, target);
+            f.part("");
+        }
+        OcclusionMap::skip_keeping(f, Still::REASON);
+    }
+
+    fn skip_repair(&self, f: &mut Frame, reason: &'static str) {
+        f.skip(woc::ExcludeObjects::INFO.name, reason);
+        if let Some(map) = &self.map {
+            map.skip_observing(f, reason);
+        }
+        self.late.skip_packing(f, reason);
+    }
+}

@@ -1,0 +1,6 @@
+//! The laws of `woc`, and its stages against their twins.
+
+#[path = "method_woc/stages.rs"]
+mod stages;
+
+harness::approximate_method_tests!("woc", 0.08, 0.01);
