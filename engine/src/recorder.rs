@@ -39,6 +39,7 @@ pub struct IndexedIndirect {
 
 /// One recorded step.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a frame has some dozens of steps, most of them large")]
 pub enum Op {
     /// A compute stage over a grid of work groups.
     Dispatch {
