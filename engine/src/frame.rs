@@ -113,6 +113,17 @@ impl Frame {
             self.skip(S::INFO.name, "nothing to do");
             return;
         }
+        self.recorder.push(S::INFO.name, Op::Dispatch { stage: stage.bind(), groups: lower::folded(groups) });
+    }
+
+    /// Runs a compute stage over at least `size` invocations in x and y: a picture's texels. No larger than a picture may be,
+    /// which the grid of every device covers.
+    pub fn dispatch_over<S: ComputeStage>(&mut self, stage: S, size: [u32; 2]) {
+        let groups = [0, 1].map(|axis| size[axis].div_ceil(S::INFO.local_size[axis].max(1)));
+        if groups.contains(&0) {
+            self.skip(S::INFO.name, "nothing to do");
+            return;
+        }
         self.recorder.push(S::INFO.name, Op::Dispatch { stage: stage.bind(), groups });
     }
 

@@ -141,7 +141,7 @@ impl Recording<'_> {
         match op {
             Op::Dispatch { stage, groups } => {
                 self.bind(stage, None)?;
-                let [x, y] = folded(*groups);
+                let [x, y] = *groups;
                 // SAFETY: pipeline, descriptors and push constants are bound.
                 unsafe { device.cmd_dispatch(self.commands, x, y, 1) };
             }
@@ -333,7 +333,7 @@ fn range(bound: &Bound) -> (vk::Buffer, u64, u64) {
 const MOST_GROUPS: u32 = 65_535;
 
 /// A grid of at least `groups`, in two dimensions; shaders unfold it (`include/grid.glsl`).
-fn folded(groups: u32) -> [u32; 2] {
+pub(crate) fn folded(groups: u32) -> [u32; 2] {
     let rows = groups.div_ceil(MOST_GROUPS);
     [groups.div_ceil(rows.max(1)), rows]
 }

@@ -45,8 +45,8 @@ pub enum Op {
     Dispatch {
         /// The stage.
         stage: BoundStage,
-        /// Work groups in x.
-        groups: u32,
+        /// Work groups in x and y.
+        groups: [u32; 2],
     },
     /// A compute stage over a grid that lies on the GPU: three words.
     DispatchIndirect {
@@ -164,7 +164,8 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         stage.info.bindings.iter().zip(&stage.resources).map(one).collect::<Vec<_>>().join(" ")
     };
     match op {
-        Op::Dispatch { stage, groups } => format!("[{groups} groups] {}", bindings(stage)),
+        Op::Dispatch { stage, groups: [groups, 1] } => format!("[{groups} groups] {}", bindings(stage)),
+        Op::Dispatch { stage, groups: [x, y] } => format!("[{x}x{y} groups] {}", bindings(stage)),
         Op::DispatchIndirect { stage, groups } => format!("[groups from {}] {}", name(groups.id), bindings(stage)),
         Op::Draw { stage, draw, .. } => {
             let count = draw.count.map_or(String::new(), |count| format!(" count={}", name(count.id)));

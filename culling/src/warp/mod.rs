@@ -126,7 +126,7 @@ impl Warp {
             texels: self.texels,
             constants: warp::MeasureMotionConstants { dynamic, reduction: self.settings.reduction },
         };
-        f.dispatch(stage, self.texels[0] * self.texels[1]);
+        f.dispatch_over(stage, self.texels);
     }
 
     fn bound_motion(&self, f: &mut Frame) {
@@ -155,7 +155,7 @@ impl Warp {
             coarsest_level: self.coarsest,
             constants: warp::TightenBoundsConstants { steps, tile, keep_last: fill },
         };
-        f.dispatch(stage, self.tiles[0] * self.tiles[1]);
+        f.dispatch_over(stage, self.tiles);
     }
 
     fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>) {
@@ -168,7 +168,7 @@ impl Warp {
             tiles: self.tiles,
             constants: warp::SearchDepthConstants { seeds, iterations, threshold, tile, narrow, fill },
         };
-        f.dispatch(stage, self.texels[0] * self.texels[1]);
+        f.dispatch_over(stage, self.texels);
     }
 
     /// Gives each texel of a warped depth the farthest depth of itself and its eight neighbours (Kim 2015, IV.1).

@@ -9,10 +9,9 @@
 // 41u of half the picture's side, 0.002 pixels at 1280.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "motion.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 // Objects move: `items` is read. Otherwise the camera alone moves all pixels.
 layout(constant_id = 0) const bool DYNAMIC = false;
 // Pixels of a texel's side.
@@ -68,9 +67,9 @@ TexelMotion moved(uvec2 pixel, float here) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= push.texels.x * push.texels.y) return;
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, push.texels))) return;
     float here;
-    uvec2 pixel = farthest_pixel(uvec2(index % push.texels.x, index / push.texels.x), here);
-    motions.items[index] = here > DEPTH_FAR ? moved(pixel, here) : TexelMotion(vec2(0.0), DEPTH_FAR);
+    uvec2 pixel = farthest_pixel(texel, here);
+    motions.items[texel.y * push.texels.x + texel.x] = here > DEPTH_FAR ? moved(pixel, here) : TexelMotion(vec2(0.0), DEPTH_FAR);
 }

@@ -9,10 +9,9 @@
 // fixed point: the border is not smeared over what comes into view beside it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "motion.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint SEEDS = 4u;
 layout(constant_id = 1) const uint ITERATIONS = 5u;
 // How close to p a texel must come, in texels: above 0, at most 0.5.
@@ -82,7 +81,7 @@ float warped_depth(uvec2 texel) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= push.texels.x * push.texels.y) return;
-    warped.items[index] = warped_depth(uvec2(index % push.texels.x, index / push.texels.x));
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, push.texels))) return;
+    warped.items[texel.y * push.texels.x + texel.x] = warped_depth(texel);
 }

@@ -8,10 +8,9 @@
 // with the old bound, to search in vain; we do so only if holes are to be filled from it (KEEP_LAST).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "motion.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 // Tightening steps; with none the bound of all motions is taken.
 layout(constant_id = 0) const uint STEPS = 3u;
 // Texels of a tile's side.
@@ -45,9 +44,9 @@ MotionBound local_bound(vec2 low, vec2 high) {
 }
 
 void main() {
-    uint index = invocation_index();
-    if (index >= push.tiles.x * push.tiles.y) return;
-    uvec2 first = uvec2(index % push.tiles.x, index / push.tiles.x) * TILE;
+    uvec2 tile = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(tile, push.tiles))) return;
+    uvec2 first = tile * TILE;
     uvec2 last = min(first + TILE, push.texels) - 1u;
     MotionBound bound = texel_bound(levels.items[push.coarsest_level], uvec2(0u));
     for (uint step = 0u; step < STEPS && has_motion(bound); step++) {
@@ -57,5 +56,5 @@ void main() {
         if (KEEP_LAST && !has_motion(tighter)) break;
         bound = tighter;
     }
-    bounds.items[index] = bound;
+    bounds.items[tile.y * push.tiles.x + tile.x] = bound;
 }
