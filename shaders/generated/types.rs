@@ -37,6 +37,10 @@ pub const WARP_CRACK: f32 = 1.0;
 /// bounds leave it out.
 pub const WARP_REACH: f32 = 1.5;
 
+/// The depth of a texel of which the last frame knows nothing: farther than far, so that it hides nothing, and not what shows
+/// where nothing is.
+pub const DEPTH_HOLE: f32 = -1.0;
+
 /// Texels a side that an invocation of warp/erode_depth makes.
 pub const ERODE_SIDE: u32 = 4;
 

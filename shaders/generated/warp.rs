@@ -120,9 +120,13 @@ const _: () = {
     assert!(size_of::<BoundMotionPush>() == 16);
 };
 
-/// Each texel of a warped depth is given the farthest depth of itself and its eight neighbours (Kim 2015,
-/// IV.1): outlines that the warp has a texel wrong, depths taken from half a texel off on a slope, and lone texels that are
-/// too near, hide nothing any more. Twin: culling/src/warp/twin.rs
+/// The refinement of a warped depth by what is around each texel.
+/// ERODE gives a texel the farthest depth of itself and its eight neighbours (Kim 2015, IV.1): outlines that the warp has a
+/// texel wrong, depths taken from half a texel off on a slope, and lone texels that are too near, hide nothing any more.
+/// CLOSE gives a hole that surfaces surround the farthest of them, and lets no hole erode them (TOG 2018, 3.4, dilation): the
+/// searches around it succeeded, so at most two texels are not known. What comes into view there and is nearer than all
+/// around it still shows. Where background is among the neighbours, the hole becomes background.
+/// Twin: culling/src/warp/twin.rs
 ///
 /// An invocation makes a block of 4x4 texels, of which each row of the source is read once.
 #[derive(Clone, Copy, Debug)]
@@ -133,6 +137,8 @@ pub struct ErodeDepth {
     pub eroded: BufferRef<f32>,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
+    /// Specialization constants.
+    pub constants: ErodeDepthConstants,
 }
 
 impl Stage for ErodeDepth {
@@ -147,8 +153,8 @@ impl Stage for ErodeDepth {
             BindingInfo { name: "eroded", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 8,
-        constants: &[],
-        local_size: [64, 1, 1],
+        constants: &[ConstantInfo { name: "ERODE", id: 0 }, ConstantInfo { name: "CLOSE", id: 1 }],
+        local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
         outputs: &[],
@@ -156,7 +162,12 @@ impl Stage for ErodeDepth {
 
     fn bind(&self) -> BoundStage {
         let push = ErodeDepthPush { texels: self.texels };
-        BoundStage::new(Self::INFO, vec![self.warped.into(), self.eroded.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(
+            Self::INFO,
+            vec![self.warped.into(), self.eroded.into()],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.erode), u32::from(self.constants.close)],
+        )
     }
 }
 
@@ -172,6 +183,22 @@ const _: () = {
     assert!(std::mem::offset_of!(ErodeDepthPush, texels) == 0);
     assert!(size_of::<ErodeDepthPush>() == 8);
 };
+
+/// Specialization constants of [`ErodeDepth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErodeDepthConstants {
+    /// `ERODE` in GLSL.
+    pub erode: bool,
+    /// `CLOSE` in GLSL.
+    pub close: bool,
+}
+
+impl Default for ErodeDepthConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { erode: true, close: true }
+    }
+}
 
 /// Where does each pixel of the last frame go, and how deep is it then? Its depth is reprojected through
 /// what the camera did and, where objects move, what the pixel's object did (TOG 2018, 3.1). At reduced size the farthest
@@ -278,8 +305,9 @@ impl Default for MeasureMotionConstants {
 
 /// The depth that the new view will have at each texel, as far as the last frame shows it. From seeds
 /// spread over the motions that can lead here, a fixed point of q = p - motion(q) is searched: the texel that moves to p. Of
-/// several the nearest is in front (TOG 2018, 3.2, figure 3). Where none is found the last frame knows nothing: the hole is
-/// far, which hides nothing, or (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018, 5.3).
+/// several the nearest is in front (TOG 2018, 3.2, figure 3). Where surfaces are searched and none is found the last frame knows
+/// nothing: that is a hole, which hides nothing, or gets (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018,
+/// 5.3). Where a search ends in the background there may be background.
 /// Twin: culling/src/warp/twin.rs
 ///
 /// Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And

@@ -7,7 +7,7 @@ harness::skipping_method_tests!("woc-exact");
 fn subjects() -> Vec<Subject> {
     let sets: [&[(&str, &str)]; 6] = [
         &[("erode", "false")],
-        &[("erode", "false"), ("size", "2")],
+        &[("erode", "false"), ("close", "false"), ("size", "2")],
         &[("size", "4")],
         &[("structure", "n-buffer"), ("seeds", "1"), ("iterations", "1")],
         &[("structure", "mip"), ("erode", "false"), ("steps", "0")],

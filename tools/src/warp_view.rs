@@ -7,7 +7,7 @@ use crate::session::Session;
 use anyhow::{bail, Context, Result};
 use culling::warp::{Settings, Warp};
 use engine::{Buffer, FrameReport, Placement};
-use shaders::types::TexelMotion;
+use shaders::types::{TexelMotion, DEPTH_FAR};
 
 /// Runs of a warp; the fastest counts.
 const RUNS: usize = 9;
@@ -54,7 +54,9 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
         warp.frame(&mut f, &session.world, &view, warped.all())?;
         reports.push(f.finish().context("depth warping")?);
     }
-    let (motions, depth) = (warp.read_motions()?, warped.read()?);
+    let motions = warp.read_motions()?;
+    // Holes, which are farther than far, are shown as far.
+    let depth = warped.read()?.into_iter().map(|depth| depth.max(DEPTH_FAR)).collect();
     contender.run(session, &view, true)?;
     let images = session.targets.read()?;
     let scale = DepthScale::of(&images.depth);

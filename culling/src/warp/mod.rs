@@ -95,7 +95,7 @@ impl Warp {
     }
 
     /// Warps the last frame's depth to `view`. Writes the depth of each texel, row by row from the top, of a picture of
-    /// [`Warp::texels`].
+    /// [`Warp::texels`]; `DEPTH_HOLE`, farther than far, of which the last frame knows nothing.
     ///
     /// # Errors
     /// The device.
@@ -171,10 +171,12 @@ impl Warp {
         f.dispatch_over(stage, self.texels);
     }
 
-    /// Gives each texel of a warped depth the farthest depth of itself and its eight neighbours (Kim 2015, IV.1).
-    pub fn erode(&self, f: &mut Frame, warped: BufferRef<f32>, eroded: BufferRef<f32>) {
-        let [across, down] = self.texels.map(|side| side.div_ceil(ERODE_SIDE));
-        f.dispatch(warp::ErodeDepth { warped, eroded, texels: self.texels }, across * down);
+    /// Refines a warped depth by what is around each texel: erodes it (Kim 2015, IV.1), closes its narrow holes (TOG 2018,
+    /// 3.4), or both.
+    pub fn erode(&self, f: &mut Frame, warped: BufferRef<f32>, eroded: BufferRef<f32>, erode: bool, close: bool) {
+        let constants = warp::ErodeDepthConstants { erode, close };
+        let blocks = self.texels.map(|side| side.div_ceil(ERODE_SIDE));
+        f.dispatch_over(warp::ErodeDepth { warped, eroded, texels: self.texels, constants }, blocks);
     }
 
     /// Notes that a frame needs no warp.

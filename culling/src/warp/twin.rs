@@ -2,7 +2,7 @@
 
 use glam::{Mat4, UVec2, Vec2, Vec4};
 use shaders::types::{
-    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
+    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, DEPTH_HOLE, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
 };
 
 /// A picture of `size`, row by row from the top.
@@ -264,7 +264,7 @@ impl Search<'_> {
                 return motion.depth;
             }
             if spent {
-                break;
+                return DEPTH_HOLE;
             }
             place = self.inside(source);
             motion = self.motion_at(place);
@@ -290,8 +290,8 @@ impl Search<'_> {
         let seeds = if extent.cmple(Vec2::splat(self.narrow)).all() { 1 } else { self.seeds };
         let nearest = (0..seeds)
             .map(|index| self.fixed_point_search(p, Vec2::from(bound.low) + extent * stratified(index, seeds)))
-            .fold(DEPTH_FAR, f32::max);
-        if self.fill && nearest == DEPTH_FAR {
+            .fold(DEPTH_HOLE, f32::max);
+        if self.fill && nearest == DEPTH_HOLE {
             self.fill_hole(p, bound)
         } else {
             nearest
@@ -311,13 +311,19 @@ pub fn search_depth(how: &Search<'_>) -> Vec<f32> {
     (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y))).map(|texel| how.warped_depth(texel)).collect()
 }
 
-/// The farthest depth of each texel and its eight neighbours. Twin of `warp/erode_depth`.
-pub fn erode_depth(warped: Grid<'_, f32>) -> Vec<f32> {
+/// What a warped depth is given by its neighbours: eroded, its holes closed, or both. Twin of `warp/erode_depth`.
+pub fn erode_depth(warped: Grid<'_, f32>, erode: bool, close: bool) -> Vec<f32> {
     let [width, height] = warped.size;
-    let farthest = |x: u32, y: u32| {
+    let counts = |depth: &f32| !close || *depth != DEPTH_HOLE;
+    let refined = |x: u32, y: u32| {
+        let own = warped.at(x, y);
+        if !erode && counts(&own) {
+            return own;
+        }
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
         let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
-        rows.flat_map(|y| columns.clone().map(move |x| warped.at(x, y))).fold(f32::INFINITY, f32::min)
+        let around = rows.flat_map(|y| columns.clone().map(move |x| warped.at(x, y)));
+        around.filter(counts).reduce(f32::min).unwrap_or(DEPTH_HOLE)
     };
-    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| farthest(x, y)).collect()
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| refined(x, y)).collect()
 }

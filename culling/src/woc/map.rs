@@ -15,7 +15,9 @@ pub(super) struct Recipe {
     /// What the map consists of.
     pub(super) kind: MapKind,
     /// Each warped texel is given the farthest depth around it.
-    pub(super) erodes: bool,
+    pub(super) erode: bool,
+    /// Narrow holes are given the farthest depth around them.
+    pub(super) close: bool,
 }
 
 /// An occlusion map for pictures of one size.
@@ -34,7 +36,9 @@ impl OcclusionMap {
     fn new(gpu: &Gpu, world: &World, size: [u32; 2], recipe: Recipe) -> Result<Self> {
         let warp = Warp::new(gpu, world, size, recipe.settings)?;
         let texels = warp.texels().iter().product::<u32>() as usize;
-        let warped = recipe.erodes.then(|| Buffer::new(gpu, "woc.warped", texels, Placement::Storage)).transpose()?;
+        let warped = (recipe.erode || recipe.close)
+            .then(|| Buffer::new(gpu, "woc.warped", texels, Placement::Storage))
+            .transpose()?;
         let farthest = FarthestMap::new(gpu, size, recipe.kind)?;
         Ok(OcclusionMap { recipe, size, warp, warped, farthest })
     }
@@ -65,7 +69,7 @@ impl OcclusionMap {
         match &self.warped {
             Some(warped) => {
                 self.warp.frame(f, world, view, warped.all())?;
-                self.warp.erode(f, warped.all(), base);
+                self.warp.erode(f, warped.all(), base, self.recipe.erode, self.recipe.close);
             }
             None => {
                 self.warp.frame(f, world, view, base)?;

@@ -121,11 +121,11 @@ impl Woc {
         let (gpu, world) = (setup.gpu, setup.world);
         let flags = |name: &str| Buffer::new(gpu, &format!("woc.{name}"), world.len(), Placement::Storage);
         let settings = Settings { fill: kind == Kind::Approximate, ..Settings::of(setup.options) };
-        let erodes = setup.options.flag(options::ERODE.name);
+        let [erode, close] = [options::ERODE, options::CLOSE].map(|option| setup.options.flag(option.name));
         Ok(Woc {
             gpu: gpu.clone(),
             kind,
-            recipe: Recipe { settings, kind: hom::map_kind(setup.options), erodes },
+            recipe: Recipe { settings, kind: hom::map_kind(setup.options), erode, close },
             map: None,
             kept: flags("kept")?,
             visible: flags("visible")?,

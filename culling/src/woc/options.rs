@@ -13,6 +13,14 @@ pub(super) const ERODE: OptionInfo = OptionInfo {
     help: "give each warped texel the farthest depth around it: fewer errors, less culled",
 };
 
+/// Closing of holes.
+pub(super) const CLOSE: OptionInfo = OptionInfo {
+    name: "close",
+    default: "true",
+    values: "true|false",
+    help: "give holes of a texel or two the farthest depth around them; false leaves every hole far",
+};
+
 /// `skip`, what the occlusion map is made of, how it is warped, and the refinements.
 pub const OPTIONS: &[OptionInfo] = &[
     SKIP_OPTION,
@@ -26,4 +34,5 @@ pub const OPTIONS: &[OptionInfo] = &[
     TILE,
     NARROW,
     ERODE,
+    CLOSE,
 ];

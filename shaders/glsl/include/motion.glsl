@@ -31,6 +31,10 @@ const float WARP_CRACK = 1.0;
 // bounds leave it out.
 const float WARP_REACH = 1.5;
 
+// The depth of a texel of which the last frame knows nothing: farther than far, so that it hides nothing, and not what shows
+// where nothing is.
+const float DEPTH_HOLE = -1.0;
+
 // Texels a side that an invocation of warp/erode_depth makes.
 const uint ERODE_SIDE = 4u;
 

@@ -1,7 +1,8 @@
 // warp/search_depth: the depth that the new view will have at each texel, as far as the last frame shows it. From seeds
 // spread over the motions that can lead here, a fixed point of q = p - motion(q) is searched: the texel that moves to p. Of
-// several the nearest is in front (TOG 2018, 3.2, figure 3). Where none is found the last frame knows nothing: the hole is
-// far, which hides nothing, or (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018, 5.3).
+// several the nearest is in front (TOG 2018, 3.2, figure 3). Where surfaces are searched and none is found the last frame knows
+// nothing: that is a hole, which hides nothing, or gets (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018,
+// 5.3). Where a search ends in the background there may be background.
 // Twin: culling/src/warp/twin.rs
 //
 // Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
@@ -45,7 +46,7 @@ float fixed_point_search(vec2 p, vec2 seed) {
         precise vec2 miss = place - source;
         precise float distance_squared = miss.x * miss.x + miss.y * miss.y;
         if (distance_squared < THRESHOLD * THRESHOLD) return motion.depth;
-        if (k >= ITERATIONS) return distance_squared < WARP_CRACK * WARP_CRACK ? motion.depth : DEPTH_FAR;
+        if (k >= ITERATIONS) return distance_squared < WARP_CRACK * WARP_CRACK ? motion.depth : DEPTH_HOLE;
         place = inside(source);
         motion = motion_at(place);
     }
@@ -72,12 +73,12 @@ float warped_depth(uvec2 texel) {
     vec2 p = vec2(texel) + 0.5;
     vec2 extent = bound.high - bound.low;
     uint seeds = all(lessThanEqual(extent, vec2(NARROW))) ? 1u : SEEDS;
-    float nearest = DEPTH_FAR;
+    float nearest = DEPTH_HOLE;
     for (uint index = 0u; index < seeds; index++) {
         precise vec2 seed = bound.low + extent * stratified(index, seeds);
         nearest = max(nearest, fixed_point_search(p, seed));
     }
-    return FILL && nearest == DEPTH_FAR ? fill_hole(p, bound) : nearest;
+    return FILL && nearest == DEPTH_HOLE ? fill_hole(p, bound) : nearest;
 }
 
 void main() {
