@@ -4,12 +4,13 @@ use crate::metrics::{DepthErrors, NOTICED};
 use crate::png_out::{DepthScale, Picture};
 use crate::run::Contender;
 use crate::session::Session;
+use crate::stats;
 use anyhow::{bail, Context, Result};
 use culling::warp::{Settings, Warp};
 use engine::{Buffer, FrameReport, Placement};
 use shaders::types::{TexelMotion, DEPTH_FAR};
 
-/// Runs of a warp; the fastest counts.
+/// Runs of a warp; the median counts.
 const RUNS: usize = 9;
 
 const HOLE: [u8; 3] = [255, 150, 0];
@@ -68,15 +69,16 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
         depth,
         truth: farthest_of_blocks(&images.depth, view.size, settings.reduction),
         scale,
-        stages: fastest(&reports),
+        stages: median(&reports),
     })
 }
 
-/// Each stage's least time: the first use of a stage includes compiling it, and others are disturbed by what else runs.
-fn fastest(reports: &[FrameReport]) -> Vec<(String, f64)> {
+/// Each stage's median time: the first use of a stage includes compiling it, and others are disturbed by what else runs.
+fn median(reports: &[FrameReport]) -> Vec<(String, f64)> {
     let Some(first) = reports.first() else { return Vec::new() };
-    let least = |index: usize| reports.iter().map(|report| report.stages[index].ms).fold(f64::INFINITY, f64::min);
-    first.stages.iter().enumerate().map(|(index, stage)| (stage.label.clone(), least(index))).collect()
+    let times = |index: usize| reports.iter().map(|report| report.stages[index].ms).collect::<Vec<_>>();
+    let typical = |index: usize| stats::median(&times(index)).unwrap_or(0.0);
+    first.stages.iter().enumerate().map(|(index, stage)| (stage.label.clone(), typical(index))).collect()
 }
 
 /// What a warped texel stands for: the farthest depth of its pixels.
