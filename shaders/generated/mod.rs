@@ -57,6 +57,7 @@ pub const STAGES: &[&StageInfo] = &[
     <warp::BoundMotion as Stage>::INFO,
     <warp::ErodeDepth as Stage>::INFO,
     <warp::MeasureMotion as Stage>::INFO,
+    <warp::OrientAxes as Stage>::INFO,
     <warp::SearchDepth as Stage>::INFO,
     <warp::TightenBounds as Stage>::INFO,
     <woc::ExcludeObjects as Stage>::INFO,

@@ -246,7 +246,8 @@ const _: () = {
     assert!(size_of::<MeshRange>() == 12);
 };
 
-/// The least and the greatest motions of a region, by axis, in texels; empty if low exceeds high.
+/// The least and the greatest motions of a region, by axis, in texels; empty if low exceeds high. The axes are those of
+/// warp/orient_axes: some direction and, a quarter turn on, the one across.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MotionBound {

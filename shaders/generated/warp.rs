@@ -68,10 +68,14 @@ pub struct BoundMotion {
     pub levels: BufferRef<types::PyramidLevel>,
     /// `pyramid` in GLSL.
     pub pyramid: BufferRef<types::MotionBound>,
+    /// `axes` in GLSL.
+    pub axes: BufferRef<[f32; 2]>,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
     /// `tiles` in GLSL.
     pub tiles: [u32; 2],
+    /// Specialization constants.
+    pub constants: BoundMotionConstants,
 }
 
 impl Stage for BoundMotion {
@@ -85,9 +89,10 @@ impl Stage for BoundMotion {
             BindingInfo { name: "motions", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "axes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 16,
-        constants: &[],
+        constants: &[ConstantInfo { name: "ORIENTED", id: 0 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -98,9 +103,9 @@ impl Stage for BoundMotion {
         let push = BoundMotionPush { texels: self.texels, tiles: self.tiles };
         BoundStage::new(
             Self::INFO,
-            vec![self.motions.into(), self.levels.into(), self.pyramid.into()],
+            vec![self.motions.into(), self.levels.into(), self.pyramid.into(), self.axes.into()],
             bytemuck::bytes_of(&push),
-            vec![],
+            vec![u32::from(self.constants.oriented)],
         )
     }
 }
@@ -119,6 +124,20 @@ const _: () = {
     assert!(std::mem::offset_of!(BoundMotionPush, tiles) == 8);
     assert!(size_of::<BoundMotionPush>() == 16);
 };
+
+/// Specialization constants of [`BoundMotion`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundMotionConstants {
+    /// Bounds lie along the axes that warp/orient_axes found; otherwise along x and y.
+    pub oriented: bool,
+}
+
+impl Default for BoundMotionConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { oriented: false }
+    }
+}
 
 /// The refinement of a warped depth by what is around each texel.
 /// ERODE gives a texel the farthest depth of itself and its eight neighbours (Kim 2015, IV.1): outlines that the warp has a
@@ -303,6 +322,59 @@ impl Default for MeasureMotionConstants {
     }
 }
 
+/// Along which axes are bounds of motion narrowest? Most of a frame moves alike, so bounds along that
+/// direction and across it are narrower than along x and y: the principal axes of some 64 motions (PCA; TOG 2018, 3.3). Where
+/// they bound these motions in no smaller area, x and y are kept (4.2). Twin: culling/src/warp/axes.rs
+///
+/// One invocation: so few samples are not worth more.
+#[derive(Clone, Copy, Debug)]
+pub struct OrientAxes {
+    /// `motions` in GLSL.
+    pub motions: BufferRef<types::TexelMotion>,
+    /// `axes` in GLSL.
+    pub axes: BufferRef<[f32; 2]>,
+    /// `texels` in GLSL.
+    pub texels: [u32; 2],
+}
+
+impl Stage for OrientAxes {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "warp/orient_axes",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/warp/orient_axes.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "motions", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "axes", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 8,
+        constants: &[],
+        local_size: [1, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = OrientAxesPush { texels: self.texels };
+        BoundStage::new(Self::INFO, vec![self.motions.into(), self.axes.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for OrientAxes {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct OrientAxesPush {
+    texels: [u32; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(OrientAxesPush, texels) == 0);
+    assert!(size_of::<OrientAxesPush>() == 8);
+};
+
 /// The depth that the new view will have at each texel, as far as the last frame shows it. From seeds
 /// spread over the motions that can lead here, a fixed point of q = p - motion(q) is searched: the texel that moves to p. Of
 /// several the nearest is in front (TOG 2018, 3.2, figure 3). Where surfaces are searched and none is found the last frame knows
@@ -321,6 +393,8 @@ pub struct SearchDepth {
     pub bounds: BufferRef<types::MotionBound>,
     /// `warped` in GLSL.
     pub warped: BufferRef<f32>,
+    /// `axes` in GLSL.
+    pub axes: BufferRef<[f32; 2]>,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
     /// `tiles` in GLSL.
@@ -340,6 +414,7 @@ impl Stage for SearchDepth {
             BindingInfo { name: "motions", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "bounds", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "warped", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "axes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 16,
         constants: &[
@@ -349,6 +424,7 @@ impl Stage for SearchDepth {
             ConstantInfo { name: "TILE", id: 3 },
             ConstantInfo { name: "NARROW", id: 4 },
             ConstantInfo { name: "FILL", id: 5 },
+            ConstantInfo { name: "ORIENTED", id: 6 },
         ],
         local_size: [8, 8, 1],
         vertex: &[],
@@ -360,7 +436,7 @@ impl Stage for SearchDepth {
         let push = SearchDepthPush { texels: self.texels, tiles: self.tiles };
         BoundStage::new(
             Self::INFO,
-            vec![self.motions.into(), self.bounds.into(), self.warped.into()],
+            vec![self.motions.into(), self.bounds.into(), self.warped.into(), self.axes.into()],
             bytemuck::bytes_of(&push),
             vec![
                 self.constants.seeds,
@@ -369,6 +445,7 @@ impl Stage for SearchDepth {
                 self.constants.tile,
                 self.constants.narrow.to_bits(),
                 u32::from(self.constants.fill),
+                u32::from(self.constants.oriented),
             ],
         )
     }
@@ -404,12 +481,14 @@ pub struct SearchDepthConstants {
     pub narrow: f32,
     /// `FILL` in GLSL.
     pub fill: bool,
+    /// `ORIENTED` in GLSL.
+    pub oriented: bool,
 }
 
 impl Default for SearchDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { seeds: 4, iterations: 5, threshold: 0.5, tile: 4, narrow: 1.0, fill: false }
+        Self { seeds: 4, iterations: 5, threshold: 0.5, tile: 4, narrow: 1.0, fill: false, oriented: false }
     }
 }
 
@@ -429,6 +508,8 @@ pub struct TightenBounds {
     pub pyramid: BufferRef<types::MotionBound>,
     /// `bounds` in GLSL.
     pub bounds: BufferRef<types::MotionBound>,
+    /// `axes` in GLSL.
+    pub axes: BufferRef<[f32; 2]>,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
     /// `tiles` in GLSL.
@@ -450,12 +531,15 @@ impl Stage for TightenBounds {
             BindingInfo { name: "levels", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "bounds", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "axes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 20,
         constants: &[
             ConstantInfo { name: "STEPS", id: 0 },
             ConstantInfo { name: "TILE", id: 1 },
             ConstantInfo { name: "KEEP_LAST", id: 2 },
+            ConstantInfo { name: "ORIENTED", id: 3 },
+            ConstantInfo { name: "LOOKUPS", id: 4 },
         ],
         local_size: [8, 8, 1],
         vertex: &[],
@@ -467,9 +551,15 @@ impl Stage for TightenBounds {
         let push = TightenBoundsPush { texels: self.texels, tiles: self.tiles, coarsest_level: self.coarsest_level };
         BoundStage::new(
             Self::INFO,
-            vec![self.levels.into(), self.pyramid.into(), self.bounds.into()],
+            vec![self.levels.into(), self.pyramid.into(), self.bounds.into(), self.axes.into()],
             bytemuck::bytes_of(&push),
-            vec![self.constants.steps, self.constants.tile, u32::from(self.constants.keep_last)],
+            vec![
+                self.constants.steps,
+                self.constants.tile,
+                u32::from(self.constants.keep_last),
+                u32::from(self.constants.oriented),
+                self.constants.lookups,
+            ],
         )
     }
 }
@@ -500,11 +590,16 @@ pub struct TightenBoundsConstants {
     pub tile: u32,
     /// `KEEP_LAST` in GLSL.
     pub keep_last: bool,
+    /// `ORIENTED` in GLSL.
+    pub oriented: bool,
+    /// Texels of the pyramid that a region may touch in each direction: 2 are the paper's four lookups; with more, long regions are
+    /// bounded by smaller texels, as by anisotropic lookups (Kim 2015, III.1.C).
+    pub lookups: u32,
 }
 
 impl Default for TightenBoundsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { steps: 3, tile: 4, keep_last: false }
+        Self { steps: 3, tile: 4, keep_last: false, oriented: false, lookups: 2 }
     }
 }

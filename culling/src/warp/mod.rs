@@ -4,17 +4,21 @@
 //!
 //! Not a method, but the part that `woc` and its kin share.
 
+pub mod axes;
 mod reprojection;
 mod settings;
 pub mod twin;
 
 pub use reprojection::{reprojections, LastFrame, Reprojections};
-pub use settings::{Settings, ITERATIONS, NARROW, OPTIONS, SEEDS, STEPS, THRESHOLD, TILE};
+pub use settings::{Settings, ITERATIONS, LOOKUPS, NARROW, OPTIONS, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 
 use crate::{Result, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use shaders::types::{MotionBound, PyramidLevel, Reprojection, TexelMotion, ERODE_SIDE, REDUCED_LEVELS};
 use shaders::{warp, BufferRef, Stage};
+
+/// The axis of bounds along x and y.
+const ALONG_X: [f32; 2] = [1.0, 0.0];
 
 /// The last frame's depth, brought to this frame's view.
 pub struct Warp {
@@ -31,6 +35,7 @@ pub struct Warp {
     last: Option<LastFrame>,
     levels: Buffer<PyramidLevel>,
     motions: Buffer<TexelMotion>,
+    axes: Buffer<[f32; 2]>,
     pyramid: Buffer<MotionBound>,
     bounds: Buffer<MotionBound>,
 }
@@ -56,6 +61,7 @@ impl Warp {
             last: None,
             levels: Buffer::with_data(gpu, "warp.levels", &layout, Placement::Storage)?,
             motions: Buffer::new(gpu, "warp.motions", area(texels), Placement::Storage)?,
+            axes: Buffer::with_data(gpu, "warp.axes", &[ALONG_X], Placement::Storage)?,
             pyramid: bounds("warp.pyramid", pyramid_texels)?,
             bounds: bounds("warp.bounds", area(tiles))?,
             settings,
@@ -108,9 +114,10 @@ impl Warp {
         let Reprojections { camera, moving } = reprojections(last, world, view);
         self.reprojections.write(&moving)?;
         self.measure_motion(f, camera, !moving.is_empty()); // 1. where each pixel of the last frame goes
-        self.bound_motion(f); // 2. the least and greatest motion of each region
-        self.tighten_bounds(f); // 3. where each tile's source can be
-        self.search_depth(f, warped); // 4. what moves here, and the nearest of it
+        self.orient_axes(f); // 2. along which axes motion is bounded best
+        self.bound_motion(f); // 3. the least and greatest motion of each region
+        self.tighten_bounds(f); // 4. where each tile's source can be
+        self.search_depth(f, warped); // 5. what moves here, and the nearest of it
         Ok(())
     }
 
@@ -129,6 +136,15 @@ impl Warp {
         f.dispatch_over(stage, self.texels);
     }
 
+    fn orient_axes(&self, f: &mut Frame) {
+        if self.settings.oriented {
+            let stage = warp::OrientAxes { motions: self.motions.all(), axes: self.axes.all(), texels: self.texels };
+            f.dispatch(stage, 1);
+        } else {
+            f.skip(warp::OrientAxes::INFO.name, "bounds lie along x and y");
+        }
+    }
+
     fn bound_motion(&self, f: &mut Frame) {
         let tiles_at = |level: u32| {
             let PyramidLevel { width, height, .. } = self.layout[level as usize];
@@ -136,7 +152,15 @@ impl Warp {
         };
         let (levels, pyramid) = (self.levels.all(), self.pyramid.all());
         let tiles = tiles_at(REDUCED_LEVELS);
-        let first = warp::BoundMotion { motions: self.motions.all(), levels, pyramid, texels: self.texels, tiles };
+        let first = warp::BoundMotion {
+            motions: self.motions.all(),
+            levels,
+            pyramid,
+            axes: self.axes.all(),
+            texels: self.texels,
+            tiles,
+            constants: warp::BoundMotionConstants { oriented: self.settings.oriented },
+        };
         f.dispatch(first, tiles[0] * tiles[1]);
         for source_level in (REDUCED_LEVELS..self.coarsest).step_by(REDUCED_LEVELS as usize) {
             let tiles = tiles_at(source_level + REDUCED_LEVELS);
@@ -145,28 +169,30 @@ impl Warp {
     }
 
     fn tighten_bounds(&self, f: &mut Frame) {
-        let Settings { steps, tile, fill, .. } = self.settings;
+        let Settings { steps, tile, fill, oriented, lookups, .. } = self.settings;
         let stage = warp::TightenBounds {
             levels: self.levels.all(),
             pyramid: self.pyramid.all(),
             bounds: self.bounds.all(),
+            axes: self.axes.all(),
             texels: self.texels,
             tiles: self.tiles,
             coarsest_level: self.coarsest,
-            constants: warp::TightenBoundsConstants { steps, tile, keep_last: fill },
+            constants: warp::TightenBoundsConstants { steps, tile, keep_last: fill, oriented, lookups },
         };
         f.dispatch_over(stage, self.tiles);
     }
 
     fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>) {
-        let Settings { seeds, iterations, threshold, tile, narrow, fill, .. } = self.settings;
+        let Settings { seeds, iterations, threshold, tile, narrow, fill, oriented, .. } = self.settings;
         let stage = warp::SearchDepth {
             motions: self.motions.all(),
             bounds: self.bounds.all(),
+            axes: self.axes.all(),
             warped,
             texels: self.texels,
             tiles: self.tiles,
-            constants: warp::SearchDepthConstants { seeds, iterations, threshold, tile, narrow, fill },
+            constants: warp::SearchDepthConstants { seeds, iterations, threshold, tile, narrow, fill, oriented },
         };
         f.dispatch_over(stage, self.texels);
     }
@@ -183,6 +209,7 @@ impl Warp {
     pub fn skip(f: &mut Frame, reason: &'static str) {
         for stage in [
             warp::MeasureMotion::INFO,
+            warp::OrientAxes::INFO,
             warp::BoundMotion::INFO,
             warp::BoundLevels::INFO,
             warp::TightenBounds::INFO,
@@ -200,6 +227,11 @@ impl Warp {
     /// Where each texel goes, read back; for pictures and tests.
     pub fn read_motions(&self) -> Result<Vec<TexelMotion>> {
         Ok(self.motions.read()?)
+    }
+
+    /// The axis along which motion is bounded, read back; for tests and measures.
+    pub fn read_axis(&self) -> Result<[f32; 2]> {
+        Ok(self.axes.read()?.first().copied().unwrap_or(ALONG_X))
     }
 
     /// The motion pyramid with where its levels lie, read back; for tests.

@@ -43,6 +43,23 @@ pub const NARROW: OptionInfo = OptionInfo {
     help: "width in texels up to which a bound is sampled once; 0 samples all alike",
 };
 
+/// Axes of bounds.
+pub const ORIENTED: OptionInfo = OptionInfo {
+    name: "oriented",
+    default: "false",
+    values: "true|false",
+    help: "bound motion along its principal axes, where that is tighter",
+};
+
+/// Texels looked up for a bound.
+pub const LOOKUPS: OptionInfo = OptionInfo {
+    name: "lookups",
+    default: "2",
+    values: "2..=8",
+    help:
+        "pyramid texels a bound may touch in each direction: 2 is the paper's, more is tighter (anisotropic) and slower",
+};
+
 /// Filling of holes.
 const FILL: OptionInfo = OptionInfo {
     name: "fill",
@@ -52,7 +69,8 @@ const FILL: OptionInfo = OptionInfo {
 };
 
 /// Options of a warp on its own. Methods list those they have among their own, and fill holes or do not.
-pub const OPTIONS: &[OptionInfo] = &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, FILL];
+pub const OPTIONS: &[OptionInfo] =
+    &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, ORIENTED, LOOKUPS, FILL];
 
 /// The same, read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +89,10 @@ pub struct Settings {
     pub tile: u32,
     /// Width in texels up to which a bound is sampled once.
     pub narrow: f32,
+    /// Motion is bounded along its principal axes, where that is tighter.
+    pub oriented: bool,
+    /// Texels of the motion pyramid that a bound may touch in each direction, > 1.
+    pub lookups: u32,
     /// Holes are filled from the extremes of the search bound: not conservative.
     pub fill: bool,
 }
@@ -87,6 +109,8 @@ impl Settings {
             steps: options.number("steps"),
             tile: options.number("tile"),
             narrow: fraction("narrow"),
+            oriented: options.flag(ORIENTED.name),
+            lookups: options.number(LOOKUPS.name).max(2),
             fill: options.flag(FILL.name),
         }
     }

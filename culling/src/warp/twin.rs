@@ -1,5 +1,6 @@
-//! The stages of depth warping in plain Rust: their definition.
+//! The stages of depth warping in plain Rust: their definition. The axes of bounds are in [`axes`](super::axes).
 
+use super::axes::{turned_back, turned_to};
 use glam::{Mat4, UVec2, Vec2, Vec4};
 use shaders::types::{
     MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, DEPTH_HOLE, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
@@ -15,7 +16,7 @@ pub struct Grid<'a, T> {
 }
 
 impl<T: Copy> Grid<'_, T> {
-    fn at(&self, x: u32, y: u32) -> T {
+    pub(super) fn at(&self, x: u32, y: u32) -> T {
         self.values[(y * self.size[0] + x) as usize]
     }
 }
@@ -80,7 +81,7 @@ pub fn has_motion(bound: &MotionBound) -> bool {
     (0..2).all(|axis| bound.low[axis] <= bound.high[axis])
 }
 
-fn union_of(a: MotionBound, b: MotionBound) -> MotionBound {
+pub(super) fn union_of(a: MotionBound, b: MotionBound) -> MotionBound {
     MotionBound {
         low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
         high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
@@ -95,11 +96,12 @@ fn common_to(a: MotionBound, b: MotionBound) -> MotionBound {
 }
 
 /// A texel's own motion as a bound; empty if nothing is there or if it leaves the picture. Twin of `bound_of`.
-pub fn bound_of(motion: &TexelMotion, texel: [u32; 2], texels: [u32; 2]) -> MotionBound {
+pub fn bound_of(motion: &TexelMotion, texel: [u32; 2], texels: [u32; 2], axis: [f32; 2]) -> MotionBound {
     let end = |axis: usize| texel[axis] as f32 + 0.5 + motion.offset[axis];
     let inside = |axis: usize| end(axis) >= -WARP_REACH && end(axis) <= texels[axis] as f32 + WARP_REACH;
     if motion.depth > DEPTH_FAR && inside(0) && inside(1) {
-        MotionBound { low: motion.offset, high: motion.offset }
+        let parts = turned_to(motion.offset, axis);
+        MotionBound { low: parts, high: parts }
     } else {
         NO_MOTION
     }
@@ -126,10 +128,10 @@ fn bound_three(source: &[MotionBound], mut size: [u32; 2]) -> Vec<MotionBound> {
 }
 
 /// The first three levels of the motion pyramid, one behind the other. Twin of `warp/bound_motion`.
-pub fn bound_motion(motions: Grid<'_, TexelMotion>) -> Vec<MotionBound> {
+pub fn bound_motion(motions: Grid<'_, TexelMotion>, axis: [f32; 2]) -> Vec<MotionBound> {
     let width = motions.size[0];
     let texel = |index: usize| [index as u32 % width, index as u32 / width];
-    let own = |(index, motion): (usize, &TexelMotion)| bound_of(motion, texel(index), motions.size);
+    let own = |(index, motion): (usize, &TexelMotion)| bound_of(motion, texel(index), motions.size, axis);
     let bounds: Vec<MotionBound> = motions.values.iter().enumerate().map(own).collect();
     bound_three(&bounds, motions.size)
 }
@@ -141,8 +143,8 @@ pub fn bound_levels(pyramid: &[MotionBound], levels: &[PyramidLevel], source_lev
 }
 
 /// The whole motion pyramid, by `levels` as the layout gives them.
-pub fn pyramid(motions: Grid<'_, TexelMotion>, levels: &[PyramidLevel]) -> Vec<MotionBound> {
-    let mut all = bound_motion(motions);
+pub fn pyramid(motions: Grid<'_, TexelMotion>, levels: &[PyramidLevel], axis: [f32; 2]) -> Vec<MotionBound> {
+    let mut all = bound_motion(motions, axis);
     for source_level in (REDUCED_LEVELS..levels.len() as u32 - 1).step_by(REDUCED_LEVELS as usize) {
         all.extend(bound_levels(&all, levels, source_level));
     }
@@ -166,6 +168,10 @@ pub struct Tightening<'a> {
     pub tile: u32,
     /// Keep the last bound where nothing moves to the tile.
     pub keep_last: bool,
+    /// Along what the bounds lie.
+    pub axis: [f32; 2],
+    /// Texels that a bound may touch in each direction, > 1.
+    pub lookups: u32,
 }
 
 impl Tightening<'_> {
@@ -181,15 +187,32 @@ impl Tightening<'_> {
         let PyramidLevel { first: start, width, .. } = self.levels[level as usize];
         let (first, last) = (first >> level, last >> level);
         let bound = |x: u32, y: u32| self.pyramid[(start + y * width + x) as usize];
-        union_of(
-            union_of(bound(first.x, first.y), bound(last.x, first.y)),
-            union_of(bound(first.x, last.y), bound(last.x, last.y)),
-        )
+        let texels = (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| (x, y)));
+        texels.map(|(x, y)| bound(x, y)).fold(NO_MOTION, union_of)
     }
 
-    /// The finest level at which texels `widest` apart are neighbours at most.
+    /// The finest level at which texels `widest` apart are no more than `lookups` - 1 apart.
     fn level_for(&self, widest: u32) -> u32 {
-        (1..self.coarsest_level).find(|level| 1 << level >= widest).unwrap_or(self.coarsest_level)
+        let reaches = |level: &u32| (self.lookups - 1) << level >= widest;
+        (1..self.coarsest_level).find(reaches).unwrap_or(self.coarsest_level)
+    }
+
+    /// The bound along x and y of what lies in a bound along the axis and across it. Twin of `upright`.
+    pub fn upright(&self, bound: &MotionBound) -> MotionBound {
+        const WIDER: f32 = 8.0 / 16_777_216.0;
+        if self.axis == [1.0, 0.0] {
+            return *bound;
+        }
+        let both = |of: &dyn Fn(usize) -> f32| [of(0), of(1)];
+        let middle = turned_back(both(&|side| 0.5 * (bound.low[side] + bound.high[side])), self.axis);
+        let arm = both(&|side| 0.5 * (bound.high[side] - bound.low[side]));
+        let [along, across] = self.axis.map(f32::abs);
+        let reach = [along * arm[0] + across * arm[1], across * arm[0] + along * arm[1]];
+        let wider = both(&|side| {
+            let other = 1 - side;
+            reach[side] + WIDER * (middle[side].abs() + reach[side] + middle[other].abs().max(reach[other]))
+        });
+        MotionBound { low: both(&|side| middle[side] - wider[side]), high: both(&|side| middle[side] + wider[side]) }
     }
 }
 
@@ -206,8 +229,9 @@ pub fn tighten_bounds(how: &Tightening<'_>) -> Vec<MotionBound> {
                 if !has_motion(&bound) {
                     break;
                 }
-                let low = first.as_vec2() + 0.5 - Vec2::from(bound.high) - WARP_REACH;
-                let high = last.as_vec2() + 0.5 - Vec2::from(bound.low) + WARP_REACH;
+                let moved = how.upright(&bound);
+                let low = first.as_vec2() + 0.5 - Vec2::from(moved.high) - WARP_REACH;
+                let high = last.as_vec2() + 0.5 - Vec2::from(moved.low) + WARP_REACH;
                 let tighter = common_to(bound, how.local_bound(low, high));
                 if how.keep_last && !has_motion(&tighter) {
                     break;
@@ -238,6 +262,8 @@ pub struct Search<'a> {
     pub narrow: f32,
     /// Holes get the nearest depth at the extremes of the bound.
     pub fill: bool,
+    /// Along what the bounds lie.
+    pub axis: [f32; 2],
 }
 
 impl Search<'_> {
@@ -276,7 +302,8 @@ impl Search<'_> {
     fn fill_hole(&self, p: Vec2, bound: &MotionBound) -> f32 {
         let [low, high] = [bound.low, bound.high];
         let extremes = [low, [low[0], high[1]], high, [high[0], low[1]]];
-        extremes.map(|motion| self.motion_at(self.inside(p - Vec2::from(motion))).depth).into_iter().fold(0.0, f32::max)
+        let depth = |parts: [f32; 2]| self.motion_at(self.inside(p - Vec2::from(turned_back(parts, self.axis)))).depth;
+        extremes.map(depth).into_iter().fold(0.0, f32::max)
     }
 
     fn warped_depth(&self, texel: UVec2) -> f32 {
@@ -289,7 +316,8 @@ impl Search<'_> {
         let extent = Vec2::from(bound.high) - Vec2::from(bound.low);
         let seeds = if extent.cmple(Vec2::splat(self.narrow)).all() { 1 } else { self.seeds };
         let nearest = (0..seeds)
-            .map(|index| self.fixed_point_search(p, Vec2::from(bound.low) + extent * stratified(index, seeds)))
+            .map(|index| Vec2::from(bound.low) + extent * stratified(index, seeds))
+            .map(|parts| self.fixed_point_search(p, turned_back(parts.to_array(), self.axis).into()))
             .fold(DEPTH_HOLE, f32::max);
         if self.fill && nearest == DEPTH_HOLE {
             self.fill_hole(p, bound)

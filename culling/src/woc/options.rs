@@ -1,7 +1,7 @@
 //! What can be set about warping-based occlusion culling.
 
 use crate::farthest::hom::{LEVELS_OPTION, SIZE_OPTION, STRUCTURE_OPTION};
-use crate::warp::{ITERATIONS, NARROW, SEEDS, STEPS, THRESHOLD, TILE};
+use crate::warp::{ITERATIONS, LOOKUPS, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 use crate::world::SKIP_OPTION;
 use crate::OptionInfo;
 
@@ -33,6 +33,8 @@ pub const OPTIONS: &[OptionInfo] = &[
     STEPS,
     TILE,
     NARROW,
+    ORIENTED,
+    LOOKUPS,
     ERODE,
     CLOSE,
 ];

@@ -6,14 +6,17 @@
 #include "motion.glsl"
 
 layout(local_size_x = 64) in;
+// Bounds lie along the axes that warp/orient_axes found; otherwise along x and y.
+layout(constant_id = 0) const bool ORIENTED = false;
 layout(set = 0, binding = 0, scalar) readonly buffer Motions { TexelMotion items[]; } motions;
 layout(set = 0, binding = 1, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 2, scalar) writeonly buffer Pyramid { MotionBound items[]; } pyramid;
+layout(set = 0, binding = 3, scalar) readonly buffer Axes { vec2 items[]; } axes;
 layout(push_constant, scalar) uniform Push { uvec2 texels; uvec2 tiles; } push;
 
 MotionBound source_bound(uvec2 texel) {
     uvec2 inside = min(texel, push.texels - 1u);
-    return bound_of(motions.items[inside.y * push.texels.x + inside.x], inside, push.texels);
+    return bound_of(motions.items[inside.y * push.texels.x + inside.x], inside, push.texels, ORIENTED ? axes.items[0] : vec2(1.0, 0.0));
 }
 
 #include "bound.glsl"

@@ -22,10 +22,12 @@ layout(constant_id = 3) const uint TILE = 4u;
 // A bound no wider than this, in texels, is sampled once: all that lies there moves alike.
 layout(constant_id = 4) const float NARROW = 1.0;
 layout(constant_id = 5) const bool FILL = false;
+layout(constant_id = 6) const bool ORIENTED = false;
 
 layout(set = 0, binding = 0, scalar) readonly buffer Motions { TexelMotion items[]; } motions;
 layout(set = 0, binding = 1, scalar) readonly buffer TileBounds { MotionBound items[]; } bounds;
 layout(set = 0, binding = 2, scalar) writeonly buffer Warped { float items[]; } warped;
+layout(set = 0, binding = 3, scalar) readonly buffer Axes { vec2 items[]; } axes;
 layout(push_constant, scalar) uniform Push { uvec2 texels; uvec2 tiles; } push;
 
 vec2 inside(vec2 place) {
@@ -60,9 +62,18 @@ vec2 stratified(uint index, uint count) {
     return min(point, vec2(1.0));
 }
 
+// A motion of a bound, along x and y.
+vec2 from_parts(vec2 parts) {
+    return ORIENTED ? turned_back(parts, axes.items[0]) : parts;
+}
+
+float depth_from(vec2 p, vec2 parts) {
+    return motion_at(inside(p - from_parts(parts))).depth;
+}
+
 float fill_hole(vec2 p, MotionBound bound) {
-    float left = max(motion_at(inside(p - bound.low)).depth, motion_at(inside(p - vec2(bound.low.x, bound.high.y))).depth);
-    float right = max(motion_at(inside(p - bound.high)).depth, motion_at(inside(p - vec2(bound.high.x, bound.low.y))).depth);
+    float left = max(depth_from(p, bound.low), depth_from(p, vec2(bound.low.x, bound.high.y)));
+    float right = max(depth_from(p, bound.high), depth_from(p, vec2(bound.high.x, bound.low.y)));
     return max(left, right);
 }
 
@@ -76,7 +87,7 @@ float warped_depth(uvec2 texel) {
     float nearest = DEPTH_HOLE;
     for (uint index = 0u; index < seeds; index++) {
         precise vec2 seed = bound.low + extent * stratified(index, seeds);
-        nearest = max(nearest, fixed_point_search(p, seed));
+        nearest = max(nearest, fixed_point_search(p, from_parts(seed)));
     }
     return FILL && nearest == DEPTH_HOLE ? fill_hole(p, bound) : nearest;
 }

@@ -1,9 +1,12 @@
 //! Bounds of motion contain every motion that they speak for: in any region, and through every tightening step.
 
+use culling::warp::axes::{orient_axes, turned_back, turned_to};
 use culling::warp::twin::{self, has_motion, Grid, Tightening};
 use glam::Vec2;
 use harness::Random;
 use shaders::types::{MotionBound, TexelMotion, WARP_REACH};
+
+const ALONG_X: [f32; 2] = [1.0, 0.0];
 
 /// Motions by chance in blobs that move alike, some background, some that leave the picture.
 fn motions(random: &mut Random, size: [u32; 2]) -> Vec<TexelMotion> {
@@ -38,7 +41,7 @@ fn showing(motions: &[TexelMotion], size: [u32; 2]) -> impl Iterator<Item = (Vec
     let own = move |(index, motion): (usize, &TexelMotion)| {
         let texel = [index as u32 % size[0], index as u32 / size[0]];
         let place = Vec2::new(texel[0] as f32 + 0.5, texel[1] as f32 + 0.5);
-        has_motion(&twin::bound_of(motion, texel, size)).then_some((place, motion.offset))
+        has_motion(&twin::bound_of(motion, texel, size, ALONG_X)).then_some((place, motion.offset))
     };
     motions.iter().enumerate().filter_map(own)
 }
@@ -55,7 +58,9 @@ fn lost_in_regions(motions: &[TexelMotion], how: &Tightening<'_>, random: &mut R
         let (low, high) = (a.min(b), a.max(b));
         let bound = how.local_bound(low, high);
         let inside = |at: &Vec2| at.cmpge(low).all() && at.cmple(high).all();
-        lost += showing(motions, size).filter(|(at, offset)| inside(at) && !contains(&bound, *offset)).count();
+        lost += showing(motions, size)
+            .filter(|(at, offset)| inside(at) && !contains(&bound, turned_to(*offset, how.axis)))
+            .count();
     }
     lost
 }
@@ -72,7 +77,7 @@ fn lost_by_tightening(motions: &[TexelMotion], how: &Tightening<'_>) -> usize {
             let first = Vec2::new((tile % across * how.tile) as f32, (tile / across * how.tile) as f32) + 0.5;
             let last = (first + how.tile as f32 - 1.0).min(Vec2::new(how.texels[0] as f32, how.texels[1] as f32) - 0.5);
             let reached = end.cmpge(first - WARP_REACH).all() && end.cmple(last + WARP_REACH).all();
-            lost += usize::from(reached && !contains(&bounds[tile as usize], offset));
+            lost += usize::from(reached && !contains(&bounds[tile as usize], turned_to(offset, how.axis)));
         }
     }
     lost
@@ -84,12 +89,28 @@ fn bounds_contain_every_motion_that_shows() {
     for size in [[1, 1], [7, 5], [64, 33], [65, 64], [97, 61]] {
         let motions = motions(&mut random, size);
         let (levels, coarsest_level) = culling::hzb::layout(size);
-        let pyramid = twin::pyramid(Grid { size, values: &motions }, &levels);
-        for (steps, tile, keep_last) in [(1, 8, false), (3, 8, false), (4, 1, false), (3, 4, true)] {
+        let aslant = orient_axes(Grid { size, values: &motions });
+        let settings = [
+            (1, 8, false, ALONG_X, 2),
+            (3, 8, false, ALONG_X, 2),
+            (4, 1, false, ALONG_X, 2),
+            (3, 4, true, ALONG_X, 2),
+            (3, 4, false, ALONG_X, 4),
+            (3, 4, false, aslant, 2),
+            (3, 4, false, [0.6, 0.8], 3),
+            (2, 8, true, [-0.8, 0.6], 8),
+        ];
+        for (steps, tile, keep_last, axis, lookups) in settings {
+            let pyramid = twin::pyramid(Grid { size, values: &motions }, &levels, axis);
+            let (levels, pyramid) = (&levels[..], &pyramid[..]);
             let how =
-                Tightening { levels: &levels, pyramid: &pyramid, coarsest_level, texels: size, steps, tile, keep_last };
+                Tightening { levels, pyramid, coarsest_level, texels: size, steps, tile, keep_last, axis, lookups };
             assert_eq!(lost_in_regions(&motions, &how, &mut random, 40), 0, "regions of {size:?}");
-            assert_eq!(lost_by_tightening(&motions, &how), 0, "{size:?}, {steps} steps, tiles of {tile}");
+            assert_eq!(
+                lost_by_tightening(&motions, &how),
+                0,
+                "{size:?}, {steps} steps, tiles of {tile}, along {axis:?}, {lookups} lookups"
+            );
         }
     }
 }
@@ -99,7 +120,7 @@ fn tightening_is_worth_its_steps() {
     let size = [97, 61];
     let motions = motions(&mut Random::new(92), size);
     let (levels, coarsest_level) = culling::hzb::layout(size);
-    let pyramid = twin::pyramid(Grid { size, values: &motions }, &levels);
+    let pyramid = twin::pyramid(Grid { size, values: &motions }, &levels, ALONG_X);
     let area = |steps: u32| -> f64 {
         let how = Tightening {
             levels: &levels,
@@ -109,6 +130,8 @@ fn tightening_is_worth_its_steps() {
             steps,
             tile: 4,
             keep_last: false,
+            axis: ALONG_X,
+            lookups: 2,
         };
         let bounds = twin::tighten_bounds(&how);
         let area = |bound: &MotionBound| f64::from((bound.high[0] - bound.low[0]) * (bound.high[1] - bound.low[1]));
@@ -125,10 +148,20 @@ fn a_lost_motion_is_noticed() {
     let mut random = Random::new(93);
     let motions = motions(&mut random, size);
     let (levels, coarsest_level) = culling::hzb::layout(size);
-    let mut pyramid = twin::pyramid(Grid { size, values: &motions }, &levels);
+    let mut pyramid = twin::pyramid(Grid { size, values: &motions }, &levels, ALONG_X);
     let how = |pyramid: &[MotionBound], random: &mut Random| {
-        let how =
-            Tightening { levels: &levels, pyramid, coarsest_level, texels: size, steps: 3, tile: 8, keep_last: false };
+        let (levels, axis) = (&levels[..], ALONG_X);
+        let how = Tightening {
+            levels,
+            pyramid,
+            coarsest_level,
+            texels: size,
+            steps: 3,
+            tile: 8,
+            keep_last: false,
+            axis,
+            lookups: 2,
+        };
         lost_in_regions(&motions, &how, random, 40) + lost_by_tightening(&motions, &how)
     };
     assert_eq!(how(&pyramid, &mut random), 0);
@@ -136,4 +169,26 @@ fn a_lost_motion_is_noticed() {
         bound.low[0] += 0.25;
     }
     assert!(how(&pyramid, &mut random) > 0);
+}
+
+/// Motions along a slope are bounded far better along it; motions along x or y, or of all directions, stay as they are.
+#[test]
+fn axes_lie_along_what_moves() {
+    let size = [64, 48];
+    let mut random = Random::new(94);
+    let mut along = |axis: [f32; 2], across: f64| -> Vec<TexelMotion> {
+        let motion = |_| {
+            let parts = [random.range(-20.0, 20.0) as f32, (across * random.range(-20.0, 20.0)) as f32];
+            TexelMotion { offset: turned_back(parts, axis), depth: 0.5 }
+        };
+        (0..size[0] * size[1]).map(motion).collect()
+    };
+    let slant = [0.8, 0.6];
+    let found = orient_axes(Grid { size, values: &along(slant, 0.01) });
+    let parallel = found[0] * slant[0] + found[1] * slant[1];
+    assert!(parallel.abs() > 0.999, "{found:?}");
+    assert_eq!(orient_axes(Grid { size, values: &along(ALONG_X, 0.0) }), ALONG_X);
+    assert_eq!(orient_axes(Grid { size, values: &along([0.0, 1.0], 0.0) }), ALONG_X, "no smaller area");
+    let nothing = vec![TexelMotion { offset: [0.0; 2], depth: 0.0 }; (size[0] * size[1]) as usize];
+    assert_eq!(orient_axes(Grid { size, values: &nothing }), ALONG_X);
 }

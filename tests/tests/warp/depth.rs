@@ -73,7 +73,8 @@ fn a_wall_is_warped_to_where_it_is() {
     for (aside, iterations, most_holes) in steps {
         let case = Case::new("wall", maker.scene.clone(), vec![at(DVec3::ZERO), at(aside)]).sized([320, 181]);
         let mut lab = Lab::new(&gpu, &case);
-        let pair = warp(&mut lab, [&case.shots[0], &case.shots[1]], Settings { seeds: 4, iterations, ..Settings::default() });
+        let pair =
+            warp(&mut lab, [&case.shots[0], &case.shots[1]], Settings { seeds: 4, iterations, ..Settings::default() });
         let truth = lab.truth(&case.shots[1]).images().depth.clone();
         // Depth of a plane is affine over the picture, so its slopes are those between any neighbours; the source's motion
         // ends within WARP_REACH of its target, in each direction.

@@ -1,6 +1,7 @@
 //! Each stage of the warp against its twin, at sizes that pyramids get wrong and in all settings.
 
 use super::{warp, Pair, OVER_BOXES};
+use culling::warp::axes::orient_axes;
 use culling::warp::twin::{self, Grid, Search, Tightening};
 use culling::warp::{reprojections, Settings};
 use glam::DVec3;
@@ -45,7 +46,16 @@ fn check(lab: &Lab, pair: &Pair, settings: &Settings, what: &str) {
     let texels = pair.warp.texels();
     let motions = Grid { size: texels, values: &motions[..] };
     let (levels, pyramid) = pair.warp.read_pyramid().unwrap();
-    assert!(pyramid == twin::pyramid(motions, &levels), "{what}: pyramid");
+    let axis = pair.warp.read_axis().unwrap();
+    if settings.oriented {
+        let expected = orient_axes(motions);
+        let apart = (0..2).map(|side| (axis[side] - expected[side]).abs()).fold(0.0, f32::max);
+        // A device's square root and division may be off in the last bits.
+        assert!(apart < 1e-6, "{what}: {axis:?} instead of {expected:?}");
+    } else {
+        assert_eq!(axis, [1.0, 0.0], "{what}");
+    }
+    assert!(pyramid == twin::pyramid(motions, &levels, axis), "{what}: pyramid");
     let tightening = Tightening {
         levels: &levels,
         pyramid: &pyramid,
@@ -54,11 +64,13 @@ fn check(lab: &Lab, pair: &Pair, settings: &Settings, what: &str) {
         steps: settings.steps,
         tile: settings.tile,
         keep_last: settings.fill,
+        axis,
+        lookups: settings.lookups,
     };
     let bounds = pair.warp.read_bounds().unwrap();
     assert!(bounds == twin::tighten_bounds(&tightening), "{what}: bounds");
     let Settings { seeds, iterations, threshold, tile, narrow, fill, .. } = *settings;
-    let search = Search { motions, bounds: &bounds, seeds, iterations, threshold, tile, narrow, fill };
+    let search = Search { motions, bounds: &bounds, seeds, iterations, threshold, tile, narrow, fill, axis };
     assert!(pair.warped == twin::search_depth(&search), "{what}: warped depth");
 }
 
@@ -88,6 +100,9 @@ fn every_stage_equals_its_twin_in_all_settings() {
         Settings { steps: 0, tile: 16, ..base },
         Settings { steps: 4, tile: 1, narrow: 0.0, ..base },
         Settings { fill: true, tile: 2, ..base },
+        Settings { oriented: true, ..base },
+        Settings { oriented: true, lookups: 4, seeds: 3, fill: true, ..base },
+        Settings { lookups: 8, tile: 2, reduction: 2, ..base },
         Settings { fill: true, steps: 0, narrow: 2.0, reduction: 2, ..base },
     ];
     let mut lab = Lab::new(&gpu, &walled(60));
