@@ -61,5 +61,7 @@ pub const STAGES: &[&StageInfo] = &[
     <warp::SearchDepth as Stage>::INFO,
     <warp::TightenBounds as Stage>::INFO,
     <woc::ExcludeObjects as Stage>::INFO,
+    <woc::FindRapid as Stage>::INFO,
+    <woc::LeaveRapid as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

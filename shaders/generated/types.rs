@@ -11,6 +11,9 @@ pub const DEPTH_ROUNDING: f32 = 9.536743e-7;
 /// `CLIP_ERROR` in GLSL.
 pub const CLIP_ERROR: f32 = 1.9073486e-6;
 
+/// Invocations that stride over a draw list in woc/find_rapid.
+pub const RAPID_INVOCATIONS: u32 = 1024;
+
 /// Texels of a row that one invocation writes: an invocation for each costs more than the work.
 pub const FARTHEST_STRIP: u32 = 16;
 

@@ -145,7 +145,8 @@ impl Default for BoundMotionConstants {
 /// CLOSE gives a hole that surfaces surround the farthest of them, and lets no hole erode them (TOG 2018, 3.4, dilation): the
 /// searches around it succeeded, so at most two texels are not known. What comes into view there and is nearer than all
 /// around it still shows. Where background is among the neighbours, the hole becomes background.
-/// Twin: culling/src/warp/twin.rs
+/// MERGE takes what was drawn ahead of this frame's objects, where it is nearer (Kim 2015, IV.1, rapid objects): the farthest of
+/// a texel's pixels, which the picture will show or something nearer. Twin: culling/src/warp/twin.rs
 ///
 /// An invocation makes a block of 4x4 texels, of which each row of the source is read once.
 #[derive(Clone, Copy, Debug)]
@@ -154,8 +155,12 @@ pub struct ErodeDepth {
     pub warped: BufferRef<f32>,
     /// `eroded` in GLSL.
     pub eroded: BufferRef<f32>,
+    /// The depth drawn so far, by pixel.
+    pub drawn: BufferRef<f32>,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
     /// Specialization constants.
     pub constants: ErodeDepthConstants,
 }
@@ -170,9 +175,15 @@ impl Stage for ErodeDepth {
         bindings: &[
             BindingInfo { name: "warped", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "eroded", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "drawn", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
-        push_size: 8,
-        constants: &[ConstantInfo { name: "ERODE", id: 0 }, ConstantInfo { name: "CLOSE", id: 1 }],
+        push_size: 16,
+        constants: &[
+            ConstantInfo { name: "ERODE", id: 0 },
+            ConstantInfo { name: "CLOSE", id: 1 },
+            ConstantInfo { name: "MERGE", id: 2 },
+            ConstantInfo { name: "REDUCTION", id: 3 },
+        ],
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -180,12 +191,17 @@ impl Stage for ErodeDepth {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = ErodeDepthPush { texels: self.texels };
+        let push = ErodeDepthPush { texels: self.texels, size_px: self.size_px };
         BoundStage::new(
             Self::INFO,
-            vec![self.warped.into(), self.eroded.into()],
+            vec![self.warped.into(), self.eroded.into(), self.drawn.into()],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.erode), u32::from(self.constants.close)],
+            vec![
+                u32::from(self.constants.erode),
+                u32::from(self.constants.close),
+                u32::from(self.constants.merge),
+                self.constants.reduction,
+            ],
         )
     }
 }
@@ -196,11 +212,13 @@ impl ComputeStage for ErodeDepth {}
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ErodeDepthPush {
     texels: [u32; 2],
+    size_px: [u32; 2],
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(ErodeDepthPush, texels) == 0);
-    assert!(size_of::<ErodeDepthPush>() == 8);
+    assert!(std::mem::offset_of!(ErodeDepthPush, size_px) == 8);
+    assert!(size_of::<ErodeDepthPush>() == 16);
 };
 
 /// Specialization constants of [`ErodeDepth`].
@@ -210,12 +228,16 @@ pub struct ErodeDepthConstants {
     pub erode: bool,
     /// `CLOSE` in GLSL.
     pub close: bool,
+    /// `MERGE` in GLSL.
+    pub merge: bool,
+    /// Pixels of a texel's side.
+    pub reduction: u32,
 }
 
 impl Default for ErodeDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { erode: true, close: true }
+        Self { erode: true, close: true, merge: false, reduction: 1 }
     }
 }
 
@@ -246,6 +268,8 @@ pub struct MeasureMotion {
     pub size_px: [u32; 2],
     /// `texels` in GLSL.
     pub texels: [u32; 2],
+    /// `fastest` in GLSL.
+    pub fastest: f32,
     /// Specialization constants.
     pub constants: MeasureMotionConstants,
 }
@@ -264,7 +288,7 @@ impl Stage for MeasureMotion {
             BindingInfo { name: "reprojections", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "motions", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 80,
+        push_size: 84,
         constants: &[ConstantInfo { name: "DYNAMIC", id: 0 }, ConstantInfo { name: "REDUCTION", id: 1 }],
         local_size: [8, 8, 1],
         vertex: &[],
@@ -273,7 +297,12 @@ impl Stage for MeasureMotion {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = MeasureMotionPush { camera: self.camera, size_px: self.size_px, texels: self.texels };
+        let push = MeasureMotionPush {
+            camera: self.camera,
+            size_px: self.size_px,
+            texels: self.texels,
+            fastest: self.fastest,
+        };
         BoundStage::new(
             Self::INFO,
             vec![
@@ -297,13 +326,15 @@ struct MeasureMotionPush {
     camera: types::Reprojection,
     size_px: [u32; 2],
     texels: [u32; 2],
+    fastest: f32,
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(MeasureMotionPush, camera) == 0);
     assert!(std::mem::offset_of!(MeasureMotionPush, size_px) == 64);
     assert!(std::mem::offset_of!(MeasureMotionPush, texels) == 72);
-    assert!(size_of::<MeasureMotionPush>() == 80);
+    assert!(std::mem::offset_of!(MeasureMotionPush, fastest) == 80);
+    assert!(size_of::<MeasureMotionPush>() == 84);
 };
 
 /// Specialization constants of [`MeasureMotion`].

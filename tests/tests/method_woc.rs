@@ -1,5 +1,9 @@
 //! The laws of `woc`, and its stages against their twins.
 
+#[path = "method_woc/planted.rs"]
+mod planted;
+#[path = "method_woc/rapid.rs"]
+mod rapid;
 #[path = "method_woc/stages.rs"]
 mod stages;
 

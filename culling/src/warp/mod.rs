@@ -40,6 +40,17 @@ pub struct Warp {
     bounds: Buffer<MotionBound>,
 }
 
+/// What is done to a warped depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Refinement {
+    /// Each texel gets the farthest depth of itself and its eight neighbours (Kim 2015, IV.1).
+    pub erode: bool,
+    /// Holes of a texel or two get the farthest depth around them (TOG 2018, 3.4).
+    pub close: bool,
+    /// The depth of each pixel that was drawn ahead: it counts where it is nearer (Kim 2015, IV.1).
+    pub drawn: Option<BufferRef<f32>>,
+}
+
 impl Warp {
     /// Warps pictures of `size` pixels of one world.
     ///
@@ -131,6 +142,7 @@ impl Warp {
             camera,
             size_px: self.size,
             texels: self.texels,
+            fastest: self.settings.fastest,
             constants: warp::MeasureMotionConstants { dynamic, reduction: self.settings.reduction },
         };
         f.dispatch_over(stage, self.texels);
@@ -197,12 +209,22 @@ impl Warp {
         f.dispatch_over(stage, self.texels);
     }
 
-    /// Refines a warped depth by what is around each texel: erodes it (Kim 2015, IV.1), closes its narrow holes (TOG 2018,
-    /// 3.4), or both.
-    pub fn erode(&self, f: &mut Frame, warped: BufferRef<f32>, eroded: BufferRef<f32>, erode: bool, close: bool) {
-        let constants = warp::ErodeDepthConstants { erode, close };
-        let blocks = self.texels.map(|side| side.div_ceil(ERODE_SIDE));
-        f.dispatch_over(warp::ErodeDepth { warped, eroded, texels: self.texels, constants }, blocks);
+    /// Refines a warped depth by what is around each texel.
+    pub fn refine(&self, f: &mut Frame, warped: BufferRef<f32>, refined: BufferRef<f32>, how: Refinement) {
+        let stage = warp::ErodeDepth {
+            warped,
+            eroded: refined,
+            drawn: how.drawn.unwrap_or(self.depth.all()),
+            texels: self.texels,
+            size_px: self.size,
+            constants: warp::ErodeDepthConstants {
+                erode: how.erode,
+                close: how.close,
+                merge: how.drawn.is_some(),
+                reduction: self.settings.reduction,
+            },
+        };
+        f.dispatch_over(stage, self.texels.map(|side| side.div_ceil(ERODE_SIDE)));
     }
 
     /// Notes that a frame needs no warp.

@@ -93,6 +93,8 @@ pub struct Settings {
     pub oriented: bool,
     /// Texels of the motion pyramid that a bound may touch in each direction, > 1.
     pub lookups: u32,
+    /// What moves farther in the canonical view volume is left out, because it is drawn ahead; 0 leaves out nothing.
+    pub fastest: f32,
     /// Holes are filled from the extremes of the search bound: not conservative.
     pub fill: bool,
 }
@@ -111,6 +113,7 @@ impl Settings {
             narrow: fraction("narrow"),
             oriented: options.flag(ORIENTED.name),
             lookups: options.number(LOOKUPS.name).max(2),
+            fastest: 0.0,
             fill: options.flag(FILL.name),
         }
     }

@@ -30,6 +30,7 @@ pub const NO_MOTION: MotionBound = MotionBound { low: [3.0e38; 2], high: [-3.0e3
 pub fn measure_motion<'a>(
     depth: Grid<'_, f32>,
     reduction: u32,
+    fastest: f32,
     reprojection: impl Fn(usize) -> &'a Reprojection,
 ) -> Vec<TexelMotion> {
     let [width, height] = depth.size.map(|side| side.div_ceil(reduction));
@@ -40,7 +41,7 @@ pub fn measure_motion<'a>(
             let here = depth.at(px, py);
             if here > DEPTH_FAR {
                 let reprojection = reprojection((py * depth.size[0] + px) as usize);
-                moved(reprojection, [px, py], depth.size, here, reduction)
+                moved(reprojection, [px, py], depth.size, here, reduction, fastest)
             } else {
                 NOWHERE
             }
@@ -61,15 +62,24 @@ fn farthest_pixel(depth: &Grid<'_, f32>, reduction: u32, x: u32, y: u32) -> (u32
     farthest
 }
 
-fn moved(reprojection: &Reprojection, pixel: [u32; 2], size: [u32; 2], here: f32, reduction: u32) -> TexelMotion {
+fn moved(
+    reprojection: &Reprojection,
+    pixel: [u32; 2],
+    size: [u32; 2],
+    here: f32,
+    reduction: u32,
+    fastest: f32,
+) -> TexelMotion {
     let m = Mat4::from_cols_array_2d(&reprojection.clip_from_last);
     let size = UVec2::from(size).as_vec2();
     let place = (UVec2::from(pixel).as_vec2() + 0.5) / size * 2.0 - 1.0;
     let clip: Vec4 = m.x_axis * place.x + m.y_axis * place.y + m.z_axis * here + m.w_axis;
-    let offset = (Vec2::new(clip.x, clip.y) / clip.w - place) * (0.5 * size / reduction as f32);
+    let way = Vec2::new(clip.x, clip.y) / clip.w - place;
+    let offset = way * (0.5 * size / reduction as f32);
     let depth = clip.z / clip.w;
+    let far_squared = way.x * way.x + way.y * way.y + (depth - here) * (depth - here);
     let shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && offset.abs().cmplt(Vec2::splat(3.0e38)).all();
-    if shows {
+    if shows && (fastest == 0.0 || far_squared <= fastest * fastest) {
         TexelMotion { offset: offset.to_array(), depth }
     } else {
         NOWHERE
@@ -339,8 +349,9 @@ pub fn search_depth(how: &Search<'_>) -> Vec<f32> {
     (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y))).map(|texel| how.warped_depth(texel)).collect()
 }
 
-/// What a warped depth is given by its neighbours: eroded, its holes closed, or both. Twin of `warp/erode_depth`.
-pub fn erode_depth(warped: Grid<'_, f32>, erode: bool, close: bool) -> Vec<f32> {
+/// What a warped depth is given by its neighbours: eroded, its holes closed, or both. Then `drawn`, by texel, counts where it
+/// is nearer. Twin of `warp/erode_depth`.
+pub fn erode_depth(warped: Grid<'_, f32>, erode: bool, close: bool, drawn: Option<&[f32]>) -> Vec<f32> {
     let [width, height] = warped.size;
     let counts = |depth: &f32| !close || *depth != DEPTH_HOLE;
     let refined = |x: u32, y: u32| {
@@ -353,5 +364,9 @@ pub fn erode_depth(warped: Grid<'_, f32>, erode: bool, close: bool) -> Vec<f32> 
         let around = rows.flat_map(|y| columns.clone().map(move |x| warped.at(x, y)));
         around.filter(counts).reduce(f32::min).unwrap_or(DEPTH_HOLE)
     };
-    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| refined(x, y)).collect()
+    let merged = |x: u32, y: u32| {
+        let drawn = drawn.map_or(DEPTH_HOLE, |drawn| drawn[(y * width + x) as usize]);
+        refined(x, y).max(drawn)
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| merged(x, y)).collect()
 }

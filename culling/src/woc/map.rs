@@ -2,7 +2,7 @@
 //! regions.
 
 use crate::farthest::{FarthestMap, MapKind};
-use crate::warp::{Settings, Warp};
+use crate::warp::{Refinement, Settings, Warp};
 use crate::{Result, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use shaders::{farthest, warp, BufferRef, Stage};
@@ -63,13 +63,20 @@ impl OcclusionMap {
         self.warp.has_last()
     }
 
-    /// Makes the map of what the last frame saw, as it will be seen in this one.
-    pub(super) fn predict(&mut self, f: &mut Frame, world: &World, view: &View) -> Result<()> {
+    /// Makes the map of what the last frame saw, as it will be seen in this one, and of what this one has `drawn` already.
+    pub(super) fn predict(
+        &mut self,
+        f: &mut Frame,
+        world: &World,
+        view: &View,
+        drawn: Option<BufferRef<f32>>,
+    ) -> Result<()> {
         let base = self.farthest.base();
         match &self.warped {
             Some(warped) => {
                 self.warp.frame(f, world, view, warped.all())?;
-                self.warp.erode(f, warped.all(), base, self.recipe.erode, self.recipe.close);
+                let Recipe { erode, close, .. } = self.recipe;
+                self.warp.refine(f, warped.all(), base, Refinement { erode, close, drawn });
             }
             None => {
                 self.warp.frame(f, world, view, base)?;

@@ -6,6 +6,7 @@
 
 mod map;
 mod options;
+mod rapid;
 pub mod twin;
 
 pub use options::OPTIONS;
@@ -17,6 +18,7 @@ use crate::world::Still;
 use crate::{Method, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use map::{OcclusionMap, Recipe};
+use rapid::Rapid;
 use shaders::{frustum, woc, Stage};
 
 /// Why `woc` may miss objects.
@@ -50,6 +52,7 @@ struct Woc {
     visible: Buffer<u32>,
     rejected: Buffer<u32>,
     newly: Buffer<u32>,
+    rapid: Option<Rapid>,
     list: DrawList,
     late: DrawList,
     still: Still,
@@ -88,21 +91,36 @@ impl Method for Woc {
         let frustum = frustum::TestBounds { bounds: world.bounds(), kept, view: view.cull(), object_count };
         f.dispatch(frustum, object_count); // 1. view-frustum culling
 
+        let drawn = match &mut self.rapid {
+            Some(rapid) => Some(rapid.draw_first(f, &self.gpu, world, view, target, (kept, &self.list))?), // 2. what is too fast to be warped
+            None => {
+                Rapid::skip(f, "not asked for");
+                None
+            }
+        };
         let predicted = map.has_seen();
+        let mut shown = kept;
         if predicted {
-            map.predict(f, world, view)?; // 2. the depth that the last frame says this one will have
-            map.test(f, world, view, kept, visible); // 3. who lies behind it everywhere
+            map.predict(f, world, view, drawn)?; // 3. the depth that the last frame says this one will have
+            map.test(f, world, view, kept, visible); // 4. who lies behind it everywhere
+            shown = visible;
         } else {
             map.skip_first(f);
         }
-        self.list.pack(f, world, if predicted { visible } else { kept }); // 4. the others, in object order
-        world.draw(f, &self.list, view, target); // 5. draw them
+        if let Some(rapid) = &self.rapid {
+            shown = rapid.leave(f, world, shown);
+        }
+        self.list.pack(f, world, shown); // 5. the others, in object order
+        world.draw(f, &self.list, view, target); // 6. draw them
 
         if self.kind == Kind::Exact {
-            self.repair(f, predicted, world, view, target); // 6. and what was culled by mistake
+            self.repair(f, predicted, world, view, target); // 7. and what was culled by mistake
         }
         if let Some(map) = &mut self.map {
-            map.keep(f, world, view, target); // 7. this is the next one's last frame
+            map.keep(f, world, view, target); // 8. this is the next one's last frame
+        }
+        if let Some(rapid) = &mut self.rapid {
+            rapid.keep(f, world, view);
         }
         Ok(())
     }
@@ -112,6 +130,9 @@ impl Method for Woc {
         if let Some(map) = &mut self.map {
             map.forget();
         }
+        if let Some(rapid) = &mut self.rapid {
+            rapid.forget();
+        }
         Ok(())
     }
 }
@@ -120,7 +141,8 @@ impl Woc {
     fn new(setup: &Setup<'_>, kind: Kind) -> Result<Self> {
         let (gpu, world) = (setup.gpu, setup.world);
         let flags = |name: &str| Buffer::new(gpu, &format!("woc.{name}"), world.len(), Placement::Storage);
-        let settings = Settings { fill: kind == Kind::Approximate, ..Settings::of(setup.options) };
+        let fastest = setup.options.text(options::RAPID.name).parse().unwrap_or(0.0);
+        let settings = Settings { fill: kind == Kind::Approximate, fastest, ..Settings::of(setup.options) };
         let [erode, close] = [options::ERODE, options::CLOSE].map(|option| setup.options.flag(option.name));
         Ok(Woc {
             gpu: gpu.clone(),
@@ -131,6 +153,7 @@ impl Woc {
             visible: flags("visible")?,
             rejected: flags("rejected")?,
             newly: flags("newly")?,
+            rapid: (fastest > 0.0).then(|| Rapid::new(gpu, world, fastest)).transpose()?,
             list: DrawList::new(gpu, "woc.list", world)?,
             late: DrawList::new(gpu, "woc.late", world)?,
             still: Still::new(setup.options).settled_after(SETTLED_AFTER),
@@ -159,6 +182,9 @@ impl Woc {
     /// Camera and objects unchanged: the last frame's lists hold, and so does the depth kept of it.
     fn same_again(&self, f: &mut Frame, world: &World, view: &View, target: &Target) {
         f.skip(frustum::TestBounds::INFO.name, Still::REASON);
+        if let Some(rapid) = &self.rapid {
+            rapid.same_again(f, world, view, target);
+        }
         if let Some(map) = &self.map {
             map.skip(f, Still::REASON);
         }

@@ -13,6 +13,9 @@
 
 const float CLIP_ERROR = 32.0 / 16777216.0;
 
+// Invocations that stride over a draw list in woc/find_rapid.
+const uint RAPID_INVOCATIONS = 1024u;
+
 struct ClipBox {
     vec4 centre;    // clip position of the box's centre
     vec4 axis_x;    // half extents, as clip vectors

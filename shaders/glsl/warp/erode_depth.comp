@@ -4,7 +4,8 @@
 // CLOSE gives a hole that surfaces surround the farthest of them, and lets no hole erode them (TOG 2018, 3.4, dilation): the
 // searches around it succeeded, so at most two texels are not known. What comes into view there and is nearer than all
 // around it still shows. Where background is among the neighbours, the hole becomes background.
-// Twin: culling/src/warp/twin.rs
+// MERGE takes what was drawn ahead of this frame's objects, where it is nearer (Kim 2015, IV.1, rapid objects): the farthest of
+// a texel's pixels, which the picture will show or something nearer. Twin: culling/src/warp/twin.rs
 //
 // An invocation makes a block of 4x4 texels, of which each row of the source is read once.
 #version 460
@@ -14,9 +15,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool ERODE = true;
 layout(constant_id = 1) const bool CLOSE = true;
+layout(constant_id = 2) const bool MERGE = false;
+// Pixels of a texel's side.
+layout(constant_id = 3) const uint REDUCTION = 1u;
 layout(set = 0, binding = 0, scalar) readonly buffer Warped { float items[]; } warped;
 layout(set = 0, binding = 1, scalar) writeonly buffer Eroded { float items[]; } eroded;
-layout(push_constant, scalar) uniform Push { uvec2 texels; } push;
+// The depth drawn so far, by pixel.
+layout(set = 0, binding = 2, scalar) readonly buffer Drawn { float items[]; } drawn;
+layout(push_constant, scalar) uniform Push { uvec2 texels; uvec2 size_px; } push;
 
 // Nearer than all depths: what a hole counts as among its neighbours, if it is to be closed.
 const float LEFT_OUT = 2.0;
@@ -44,6 +50,18 @@ vec4 farthest_of_three(Row row) {
     return min(min(left, right), vec4(row.texels[1], row.texels[2], row.texels[3], row.texels[4]));
 }
 
+float drawn_in(uvec2 texel) {
+    if (REDUCTION == 1u) return drawn.items[texel.y * push.size_px.x + texel.x];
+    float farthest = 1.0;
+    for (uint y = 0u; y < REDUCTION; y++) {
+        for (uint x = 0u; x < REDUCTION; x++) {
+            uvec2 pixel = min(texel * REDUCTION + uvec2(x, y), push.size_px - 1u);
+            farthest = min(farthest, drawn.items[pixel.y * push.size_px.x + pixel.x]);
+        }
+    }
+    return farthest;
+}
+
 void main() {
     uvec2 block = gl_GlobalInvocationID.xy;
     ivec2 first = ivec2(block * ERODE_SIDE);
@@ -59,8 +77,10 @@ void main() {
         for (int x = 0; x < int(ERODE_SIDE); x++) {
             float own = row.texels[x + 1];
             float depth = ERODE || own == LEFT_OUT ? farthest[x] : own;
-            if (first.y + y < int(push.texels.y) && first.x + x < int(push.texels.x))
-                eroded.items[line + uint(x)] = depth == LEFT_OUT ? DEPTH_HOLE : depth;
+            if (first.y + y < int(push.texels.y) && first.x + x < int(push.texels.x)) {
+                float refined = depth == LEFT_OUT ? DEPTH_HOLE : depth;
+                eroded.items[line + uint(x)] = MERGE ? max(refined, drawn_in(uvec2(first + ivec2(x, y)))) : refined;
+            }
         }
         above = here;
         here = below;

@@ -25,7 +25,9 @@ layout(set = 0, binding = 2, scalar) readonly buffer Slots { uint items[]; } slo
 // Of each object that can move: what it and the camera did.
 layout(set = 0, binding = 3, scalar) readonly buffer Reprojections { Reprojection items[]; } reprojections;
 layout(set = 0, binding = 4, scalar) writeonly buffer Motions { TexelMotion items[]; } motions;
-layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 size_px; uvec2 texels; } push;
+// `fastest`: what moves farther in the canonical view volume (-1 to 1 in x and y, 0 to 1 in depth) is left out, because its object
+// is drawn ahead (woc/find_rapid); 0 leaves out nothing.
+layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 size_px; uvec2 texels; float fastest; } push;
 
 float depth_at(uvec2 pixel) {
     return depth.items[pixel.y * push.size_px.x + pixel.x];
@@ -59,10 +61,14 @@ TexelMotion moved(uvec2 pixel, float here) {
     vec2 size = vec2(push.size_px);
     precise vec2 place = (vec2(pixel) + 0.5) / size * 2.0 - 1.0;
     precise vec4 clip = m[0] * place.x + m[1] * place.y + m[2] * here + m[3];
-    precise vec2 offset = (clip.xy / clip.w - place) * (0.5 * size / float(REDUCTION));
+    precise vec2 way = clip.xy / clip.w - place;
+    precise vec2 offset = way * (0.5 * size / float(REDUCTION));
     precise float depth = clip.z / clip.w;
+    precise float deeper = depth - here;
+    precise float far_squared = way.x * way.x + way.y * way.y + deeper * deeper;
     // Said so that NaN is nothing: what has no place in the new view must hide nothing there.
-    bool shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && all(lessThan(abs(offset), vec2(3.0e38)));
+    bool shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && all(lessThan(abs(offset), vec2(3.0e38)))
+        && (push.fastest == 0.0 || far_squared <= push.fastest * push.fastest);
     return shows ? TexelMotion(offset, depth) : TexelMotion(vec2(0.0), DEPTH_FAR);
 }
 
