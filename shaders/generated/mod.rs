@@ -62,6 +62,7 @@ pub const STAGES: &[&StageInfo] = &[
     <warp::TightenBounds as Stage>::INFO,
     <woc::ExcludeObjects as Stage>::INFO,
     <woc::FindRapid as Stage>::INFO,
+    <woc::HoldCandidates as Stage>::INFO,
     <woc::LeaveRapid as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
 ];

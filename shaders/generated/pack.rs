@@ -275,7 +275,8 @@ const _: () = {
 };
 
 /// A command for every object, which draws nothing if the object's flag is 0 (EOVC thesis III.6.1: what
-/// packing is compared with). The end of the last command that draws something is what a counter read-back passes on.
+/// packing is compared with), in object order or (SCATTERED) spread evenly, so that those who take commands by batches all have some
+/// to draw (Kim 2015, IV.3). The end of the last command that draws something is what a counter read-back passes on.
 /// Twin: culling/src/pack/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct WriteInstances {
@@ -289,10 +290,14 @@ pub struct WriteInstances {
     pub commands: BufferRef<types::DrawCommand>,
     /// `end` in GLSL.
     pub end: BufferRef<u32>,
+    /// By object: where its command lies; a permutation of each range.
+    pub places: BufferRef<u32>,
     /// `first_object` in GLSL.
     pub first_object: u32,
     /// `object_count` in GLSL.
     pub object_count: u32,
+    /// Specialization constants.
+    pub constants: WriteInstancesConstants,
 }
 
 impl Stage for WriteInstances {
@@ -308,9 +313,10 @@ impl Stage for WriteInstances {
             BindingInfo { name: "meshes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "commands", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "end", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "places", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 8,
-        constants: &[],
+        constants: &[ConstantInfo { name: "SCATTERED", id: 0 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -327,9 +333,10 @@ impl Stage for WriteInstances {
                 self.meshes.into(),
                 self.commands.into(),
                 self.end.into(),
+                self.places.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![],
+            vec![u32::from(self.constants.scattered)],
         )
     }
 }
@@ -348,3 +355,17 @@ const _: () = {
     assert!(std::mem::offset_of!(WriteInstancesPush, object_count) == 4);
     assert!(size_of::<WriteInstancesPush>() == 8);
 };
+
+/// Specialization constants of [`WriteInstances`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WriteInstancesConstants {
+    /// `SCATTERED` in GLSL.
+    pub scattered: bool,
+}
+
+impl Default for WriteInstancesConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { scattered: false }
+    }
+}

@@ -142,6 +142,83 @@ const _: () = {
     assert!(size_of::<FindRapidPush>() == 4);
 };
 
+/// Costly objects that the image-space test leaves visible are not drawn yet: their boxes are to prove that
+/// they show (Kim 2015, IV.2, hybrid occlusion query). A box that reaches the near plane cannot be rasterised: its object is
+/// drawn with the others. Twin: culling/src/woc/twin.rs
+///
+/// One invocation, so that the boxes are listed in order: candidates are few.
+#[derive(Clone, Copy, Debug)]
+pub struct HoldCandidates {
+    /// `candidates` in GLSL.
+    pub candidates: BufferRef<u32>,
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// By object: it is to be drawn.
+    pub shown: BufferRef<u32>,
+    /// `listed` in GLSL.
+    pub listed: BufferRef<u32>,
+    /// `command` in GLSL.
+    pub command: BufferRef<types::DrawCommand>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `candidate_count` in GLSL.
+    pub candidate_count: u32,
+}
+
+impl Stage for HoldCandidates {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "woc/hold_candidates",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/woc/hold_candidates.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "candidates", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "bounds", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "shown", binding: 2, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "listed", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "command", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 104,
+        constants: &[],
+        local_size: [1, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = HoldCandidatesPush { view: self.view, candidate_count: self.candidate_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.candidates.into(),
+                self.bounds.into(),
+                self.shown.into(),
+                self.listed.into(),
+                self.command.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for HoldCandidates {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HoldCandidatesPush {
+    view: types::CullView,
+    candidate_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(HoldCandidatesPush, view) == 0);
+    assert!(std::mem::offset_of!(HoldCandidatesPush, candidate_count) == 100);
+    assert!(size_of::<HoldCandidatesPush>() == 104);
+};
+
 /// What was drawn first need not be drawn again, and is visible whatever the test says of it (Kim 2015, IV.1).
 /// Twin: culling/src/woc/twin.rs.
 #[derive(Clone, Copy, Debug)]

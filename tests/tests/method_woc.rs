@@ -1,5 +1,7 @@
 //! The laws of `woc`, and its stages against their twins.
 
+#[path = "method_woc/hybrid.rs"]
+mod hybrid;
 #[path = "method_woc/planted.rs"]
 mod planted;
 #[path = "method_woc/rapid.rs"]

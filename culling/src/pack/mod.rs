@@ -18,6 +18,8 @@ pub enum Commands {
     Packed,
     /// One for each object; those of objects that are not drawn have no instance.
     ZeroInstance,
+    /// The same, at places by chance that never change, so that what is drawn is spread evenly over each range (Kim 2015, IV.3).
+    Shuffled,
 }
 
 /// A list of indirect commands on the GPU, with room for every object of a world, so that it cannot overflow.
@@ -27,11 +29,30 @@ pub struct DrawList {
     starts: Buffer<u32>,
     totals: Vec<Buffer<u32>>,
     everything: Vec<Buffer<u32>>,
+    places: Buffer<u32>,
     style: Commands,
     /// What a read-back has found: how many commands of each range to draw.
     exact: Option<Vec<u32>>,
     subgroup_size: u32,
     world: ResourceId,
+}
+
+/// By object: a place within its range, by chance but always the same (Fisher-Yates over SplitMix64).
+pub fn scattered(ranges: &[crate::world::Range]) -> Vec<u32> {
+    let mut state = 0u64;
+    let mut random = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    };
+    let mut places = Vec::new();
+    for range in ranges {
+        let mut own: Vec<u32> = (0..range.count).collect();
+        (1..own.len()).rev().for_each(|last| own.swap(last, (random() % (last as u64 + 1)) as usize));
+        places.extend(own);
+    }
+    places
 }
 
 impl DrawList {
@@ -51,17 +72,19 @@ impl DrawList {
         let all = |(index, range): (usize, &crate::world::Range)| {
             Buffer::with_data(gpu, &format!("{name}.all{index}"), &[range.count], Placement::Storage)
         };
-        let everything = if style == Commands::ZeroInstance {
+        let everything = if style != Commands::Packed {
             ranges.map(all).collect::<std::result::Result<_, _>>()?
         } else {
             Vec::new()
         };
+        let places = if style == Commands::Shuffled { scattered(world.ranges()) } else { vec![0] };
         Ok(DrawList {
             commands: Buffer::new(gpu, &format!("{name}.commands"), world.len(), Placement::Storage)?,
             counts: Buffer::new(gpu, &format!("{name}.counts"), chunks, Placement::Storage)?,
             starts: Buffer::new(gpu, &format!("{name}.starts"), chunks, Placement::Storage)?,
             totals,
             everything,
+            places: Buffer::with_data(gpu, &format!("{name}.places"), &places, Placement::Storage)?,
             style,
             exact: None,
             subgroup_size: gpu.subgroup_size(),
@@ -78,7 +101,7 @@ impl DrawList {
         for (range, total) in world.ranges().iter().zip(&self.totals) {
             match self.style {
                 Commands::Packed => self.pack_range(f, world, flags, range, total),
-                Commands::ZeroInstance => self.write_range(f, world, flags, range, total),
+                Commands::ZeroInstance | Commands::Shuffled => self.write_range(f, world, flags, range, total),
             }
         }
     }
@@ -124,8 +147,10 @@ impl DrawList {
             meshes: world.meshes(),
             commands: self.commands.all(),
             end: end.all(),
+            places: self.places.all(),
             first_object: range.first,
             object_count: range.count,
+            constants: pack::WriteInstancesConstants { scattered: self.style == Commands::Shuffled },
         };
         f.dispatch(write, range.count);
     }
@@ -142,7 +167,7 @@ impl DrawList {
     pub fn skip_packing(&self, f: &mut Frame, reason: &'static str) {
         let stages: &[_] = match self.style {
             Commands::Packed => &[pack::CountFlags::INFO, pack::ScanCounts::INFO, pack::WriteCommands::INFO],
-            Commands::ZeroInstance => &[pack::WriteInstances::INFO],
+            Commands::ZeroInstance | Commands::Shuffled => &[pack::WriteInstances::INFO],
         };
         stages.iter().for_each(|stage| f.skip(stage.name, reason));
     }

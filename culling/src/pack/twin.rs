@@ -24,8 +24,8 @@ pub fn write_commands(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]
     commands.into_iter().filter(|command| command.instance_count > 0).collect()
 }
 
-/// One command for each object, of no instance if its flag is 0, and the end of the last that draws something. Twin of
-/// `pack/write_instances`.
+/// One command for each object, in order, of no instance if its flag is 0, and the end of the last that draws something. Twin of
+/// `pack/write_instances`; [`scatter`] is what else it does if asked to.
 pub fn write_instances(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange]) -> (Vec<DrawCommand>, u32) {
     let command = |object: usize| {
         let mesh = meshes[object_meshes[object] as usize];
@@ -44,4 +44,12 @@ pub fn write_instances(flags: &[u32], object_meshes: &[u32], meshes: &[MeshRange
 /// The indices of flagged objects, in order; their number is the draw's instances. Twin of `pack/write_indices`.
 pub fn write_indices(flags: &[u32]) -> Vec<u32> {
     (0..flags.len() as u32).filter(|object| flags[*object as usize] != 0).collect()
+}
+
+/// What lies in order, each at its place, and the end of the last that draws something.
+pub fn scatter(ordered: &[DrawCommand], places: &[u32]) -> (Vec<DrawCommand>, u32) {
+    let mut commands = ordered.to_vec();
+    ordered.iter().zip(places).for_each(|(command, place)| commands[*place as usize] = *command);
+    let end = commands.iter().rposition(|command| command.instance_count > 0).map_or(0, |last| last as u32 + 1);
+    (commands, end)
 }

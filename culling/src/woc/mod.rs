@@ -4,6 +4,7 @@
 //! All that the last frame saw is an occluder of this one, as the depth it left, warped to the new view: none is chosen, and
 //! none is drawn.
 
+mod hybrid;
 mod map;
 mod options;
 mod rapid;
@@ -15,8 +16,9 @@ use crate::farthest::hom;
 use crate::pack::DrawList;
 use crate::warp::Settings;
 use crate::world::Still;
-use crate::{Method, Result, Setup, View, World};
+use crate::{Method, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
+use hybrid::Hybrid;
 use map::{OcclusionMap, Recipe};
 use rapid::Rapid;
 use shaders::{frustum, woc, Stage};
@@ -53,6 +55,7 @@ struct Woc {
     rejected: Buffer<u32>,
     newly: Buffer<u32>,
     rapid: Option<Rapid>,
+    hybrid: Option<Hybrid>,
     list: DrawList,
     late: DrawList,
     still: Still,
@@ -91,13 +94,16 @@ impl Method for Woc {
         let frustum = frustum::TestBounds { bounds: world.bounds(), kept, view: view.cull(), object_count };
         f.dispatch(frustum, object_count); // 1. view-frustum culling
 
-        let drawn = match &mut self.rapid {
-            Some(rapid) => Some(rapid.draw_first(f, &self.gpu, world, view, target, (kept, &self.list))?), // 2. what is too fast to be warped
-            None => {
-                Rapid::skip(f, "not asked for");
-                None
+        let mut drawn = None;
+        match &mut self.rapid {
+            // 2. what moved too fast to be warped
+            Some(rapid) => {
+                let lists = [Some(&self.list), self.hybrid.as_ref().map(Hybrid::list)];
+                let lists: Vec<&DrawList> = lists.into_iter().flatten().collect();
+                drawn = Some(rapid.draw_first(f, &self.gpu, world, view, target, (kept, &lists))?);
             }
-        };
+            None => Rapid::skip(f, "not asked for"),
+        }
         let predicted = map.has_seen();
         let mut shown = kept;
         if predicted {
@@ -110,19 +116,40 @@ impl Method for Woc {
         if let Some(rapid) = &self.rapid {
             shown = rapid.leave(f, world, shown);
         }
-        self.list.pack(f, world, shown); // 5. the others, in object order
-        world.draw(f, &self.list, view, target); // 6. draw them
-
+        match &mut self.hybrid {
+            Some(hybrid) => shown = hybrid.hold(f, world, view, shown)?, // 5. whose boxes are tested too
+            None => Hybrid::skip(f, "no object is costly enough"),
+        }
+        self.list.pack(f, world, shown); // 6. the others, in object order
+        world.draw(f, &self.list, view, target); // 7. draw them
+        if let Some(hybrid) = &self.hybrid {
+            hybrid.draw_shown(f, world, view, target); // 8. and the costly ones whose boxes show
+        }
         if self.kind == Kind::Exact {
-            self.repair(f, predicted, world, view, target); // 7. and what was culled by mistake
+            self.repair(f, predicted, world, view, target); // 9. and what was culled by mistake
         }
         if let Some(map) = &mut self.map {
-            map.keep(f, world, view, target); // 8. this is the next one's last frame
+            map.keep(f, world, view, target); // 10. this is the next one's last frame
         }
         if let Some(rapid) = &mut self.rapid {
             rapid.keep(f, world, view);
         }
         Ok(())
+    }
+
+    fn work(&self) -> Result<Work> {
+        let boxes = match &self.hybrid {
+            Some(hybrid) => hybrid.read_boxes()?.len() as u64,
+            None => 0,
+        };
+        Ok(Work { boxes, ..Work::default() })
+    }
+
+    fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
+        let Some(hybrid) = &self.hybrid else { return Ok(None) };
+        let boxes = world.host_bounds();
+        let singles = hybrid.read_boxes()?.into_iter().map(|object| boxes[object as usize]).collect();
+        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
     }
 
     fn forget(&mut self) -> Result<()> {
@@ -144,6 +171,13 @@ impl Woc {
         let fastest = setup.options.text(options::RAPID.name).parse().unwrap_or(0.0);
         let settings = Settings { fill: kind == Kind::Approximate, fastest, ..Settings::of(setup.options) };
         let [erode, close] = [options::ERODE, options::CLOSE].map(|option| setup.options.flag(option.name));
+        let costly = hybrid::candidates(
+            world,
+            setup.options.number(options::HYBRID.name),
+            setup.options.number(options::HYBRID_TRIANGLES.name),
+        )?;
+        let hybrid = if costly.is_empty() { None } else { Some(Hybrid::new(gpu, world, &costly)?) };
+        let list = |name: &str| DrawList::styled(gpu, name, world, options::commands(setup.options));
         Ok(Woc {
             gpu: gpu.clone(),
             kind,
@@ -154,8 +188,9 @@ impl Woc {
             rejected: flags("rejected")?,
             newly: flags("newly")?,
             rapid: (fastest > 0.0).then(|| Rapid::new(gpu, world, fastest)).transpose()?,
-            list: DrawList::new(gpu, "woc.list", world)?,
-            late: DrawList::new(gpu, "woc.late", world)?,
+            hybrid,
+            list: list("woc.list")?,
+            late: list("woc.late")?,
             still: Still::new(setup.options).settled_after(SETTLED_AFTER),
         })
     }
@@ -190,6 +225,9 @@ impl Woc {
         }
         self.list.skip_packing(f, Still::REASON);
         world.draw(f, &self.list, view, target);
+        if let Some(hybrid) = &self.hybrid {
+            hybrid.same_again(f, world, view, target);
+        }
         if self.kind == Kind::Exact {
             f.part("repair");
             self.skip_repair(f, Still::REASON);

@@ -1,9 +1,10 @@
 //! What can be set about warping-based occlusion culling.
 
 use crate::farthest::hom::{LEVELS_OPTION, SIZE_OPTION, STRUCTURE_OPTION};
+use crate::pack::Commands;
 use crate::warp::{ITERATIONS, LOOKUPS, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 use crate::world::SKIP_OPTION;
-use crate::OptionInfo;
+use crate::{OptionInfo, Options};
 
 /// How much smaller warp and map are than the picture: half, by measurement, which is faster than full size and misses fewer
 /// objects, as each texel stands for its farthest pixel (README).
@@ -33,6 +34,30 @@ pub(super) const RAPID: OptionInfo = OptionInfo {
     help: "draw first what moved farther than this in the canonical view volume; 0 draws nothing first",
 };
 
+/// Costly objects that must prove by their box that they show.
+pub(super) const HYBRID: OptionInfo = OptionInfo {
+    name: "hybrid",
+    default: "300",
+    values: "0..=10000",
+    help: "costliest objects whose boxes are tested too, against the depth of the others; 0 tests none",
+};
+
+/// Which objects are costly.
+pub(super) const HYBRID_TRIANGLES: OptionInfo = OptionInfo {
+    name: "hybrid-triangles",
+    default: "100000",
+    values: "0..=1000000000",
+    help: "triangles that an object must exceed to be one of the costliest",
+};
+
+/// How commands lie.
+pub(super) const COMMANDS: OptionInfo = OptionInfo {
+    name: "commands",
+    default: "packed",
+    values: "packed|zero-instance|shuffled",
+    help: "indirect commands of what is drawn alone, or of every object, in order or spread evenly",
+};
+
 /// `skip`, what the occlusion map is made of, how it is warped, and the refinements.
 pub const OPTIONS: &[OptionInfo] = &[
     SKIP_OPTION,
@@ -50,4 +75,16 @@ pub const OPTIONS: &[OptionInfo] = &[
     ERODE,
     CLOSE,
     RAPID,
+    HYBRID,
+    HYBRID_TRIANGLES,
+    COMMANDS,
 ];
+
+/// How the options want commands to lie.
+pub(super) fn commands(options: &Options) -> Commands {
+    match options.text(COMMANDS.name) {
+        "zero-instance" => Commands::ZeroInstance,
+        "shuffled" => Commands::Shuffled,
+        _ => Commands::Packed,
+    }
+}

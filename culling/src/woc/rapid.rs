@@ -40,7 +40,7 @@ impl Rapid {
         })
     }
 
-    /// Draws those of the objects in `kept` that are rapid and that the last frame drew: those of its `list`, and the rapid
+    /// Draws those of the objects in `kept` that are rapid and that the last frame drew: those of its `lists`, and the rapid
     /// ones of then. With no last frame none is. Gives the depth drawn so far, by pixel.
     pub(super) fn draw_first(
         &mut self,
@@ -49,14 +49,14 @@ impl Rapid {
         world: &World,
         view: &View,
         target: &Target,
-        (kept, list): (BufferRef<u32>, &DrawList),
+        (kept, lists): (BufferRef<u32>, &[&DrawList]),
     ) -> Result<BufferRef<f32>> {
         f.part(PART);
         f.fill("woc/clear_rapid", &self.flags, 0);
         if let Some(last) = self.last {
             self.views.write(&[last, view.cull()])?;
             self.find(f, world, kept, &self.list);
-            self.find(f, world, kept, list);
+            lists.iter().for_each(|list| self.find(f, world, kept, list));
         }
         self.list.pack(f, world, self.flags.all());
         world.draw(f, &self.list, view, target);

@@ -1,5 +1,6 @@
 //! The stages of warping-based occlusion culling in plain Rust: their definition.
 
+use crate::boxes::twin::{crosses_near, grown};
 use crate::frustum::twin::{clip_from_bounds, ClipBox};
 use glam::Vec4;
 use shaders::types::{Bounds, CullView, DrawCommand, OBJECT_ALWAYS_KEPT};
@@ -56,4 +57,16 @@ pub fn leave_rapid(rapid: &[u32], visible: &mut [u32]) -> Vec<u32> {
         rapid.iter().zip(&*visible).map(|(rapid, visible)| if *rapid == 0 { *visible } else { 0 }).collect();
     visible.iter_mut().zip(rapid).for_each(|(visible, rapid)| *visible |= rapid);
     remaining
+}
+
+/// Takes the candidates whose box can be rasterised out of what is to be drawn; gives them, in order. Twin of
+/// `woc/hold_candidates`.
+pub fn hold_candidates(candidates: &[u32], bounds: &[Bounds], view: &CullView, shown: &mut [u32]) -> Vec<u32> {
+    let has_box = |bound: &Bounds| {
+        bound.flags & OBJECT_ALWAYS_KEPT == 0 && !crosses_near(&clip_from_bounds(&grown(bound, view), view))
+    };
+    let held = |object: &&u32| shown[**object as usize] != 0 && has_box(&bounds[**object as usize]);
+    let held: Vec<u32> = candidates.iter().filter(held).copied().collect();
+    held.iter().for_each(|object| shown[*object as usize] = 0);
+    held
 }

@@ -1,10 +1,12 @@
 //! `pack/*`: commands in object order, at sizes around every limit.
 
-use culling::pack::twin;
+use culling::pack::{twin, Commands};
 use culling::{DrawList, World};
 use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
-use shaders::pack::{CountFlags, ScanCounts, ScanCountsConstants, WriteCommands, WriteInstances};
+use shaders::pack::{
+    CountFlags, ScanCounts, ScanCountsConstants, WriteCommands, WriteInstances, WriteInstancesConstants,
+};
 use shaders::types::{DrawCommand, MeshRange, PACK_CHUNK};
 
 const STORAGE: Placement = Placement::Storage;
@@ -154,14 +156,17 @@ fn commands_without_instances_equal_their_twin() {
         let (flags_gpu, object_meshes_gpu, end) = (words(&flags), words(&object_meshes), words(&[0]));
         let meshes_gpu = Buffer::with_data(&gpu, "test.meshes", &meshes, STORAGE).unwrap();
         let commands = Buffer::<DrawCommand>::new(&gpu, "test.commands", count, STORAGE).unwrap();
+        let places = words(&[0]);
         let stage = WriteInstances {
             flags: flags_gpu.all(),
             object_meshes: object_meshes_gpu.all(),
             meshes: meshes_gpu.all(),
             commands: commands.all(),
             end: end.all(),
+            places: places.all(),
             first_object: first as u32,
             object_count: (count - first) as u32,
+            constants: WriteInstancesConstants { scattered: false },
         };
         let mut f = gpu.frame();
         f.dispatch(stage, (count - first) as u32);
@@ -170,5 +175,46 @@ fn commands_without_instances_equal_their_twin() {
         assert_eq!(commands.read().unwrap()[first..], expected[first..], "{count} objects from {first}");
         // The end counts from the range's first object.
         assert_eq!(end.read().unwrap()[0], last.saturating_sub(first as u32), "{count} objects from {first}");
+    }
+}
+
+/// Shuffled commands are the others, each once, spread evenly: no tenth of the list holds much more than its share.
+#[test]
+fn shuffled_commands_are_the_same_spread_evenly() {
+    let gpu = gpu();
+    for case in [worlds::special::topologies(), worlds::walled(5000)] {
+        let world = World::new(&gpu, &case.scene).unwrap();
+        // Objects in one place of the scene: all commands that draw lie together, if they lie in order.
+        let chosen: Vec<u32> = (0..world.len()).map(|object| u32::from(object < world.len() / 5)).collect();
+        let flags = Buffer::with_data(&gpu, "test.flags", &chosen, STORAGE).unwrap();
+        let run = |style: Commands| -> Vec<Vec<DrawCommand>> {
+            let list = DrawList::styled(&gpu, "test.list", &world, style).unwrap();
+            let targets = sightline::targets::Targets::new(&gpu, case.size).unwrap();
+            let view = culling::View::new(&case.shots[0], case.size, 0, gpu.snap_px());
+            let mut f = gpu.frame();
+            f.clear(&targets.timed());
+            list.pack(&mut f, &world, flags.all());
+            world.draw(&mut f, &list, &view, &targets.timed());
+            let report = f.finish().unwrap();
+            let read = |draw: &engine::IndexedIndirect| {
+                let mut commands = gpu.read_bound::<DrawCommand>(&draw.commands).unwrap();
+                commands.truncate(draw.max_draws as usize);
+                commands
+            };
+            report.draws.iter().map(read).collect()
+        };
+        let (ordered, shuffled) = (run(Commands::ZeroInstance), run(Commands::Shuffled));
+        let places = culling::pack::scattered(world.ranges());
+        for ((ordered, shuffled), range) in ordered.iter().zip(&shuffled).zip(world.ranges()) {
+            let own = &places[range.first as usize..(range.first + range.count) as usize];
+            let mut sorted = own.to_vec();
+            sorted.sort_unstable();
+            assert!(sorted.into_iter().eq(0..range.count), "no permutation");
+            assert_eq!(*shuffled, twin::scatter(ordered, own).0);
+            let drawn = |part: &[DrawCommand]| part.iter().filter(|command| command.instance_count > 0).count();
+            let tenth = shuffled.len().div_ceil(10);
+            let fullest = shuffled.chunks(tenth).map(drawn).max().unwrap_or(0);
+            assert!(tenth < 100 || fullest * 10 < 2 * drawn(shuffled), "{fullest} of {} in a tenth", drawn(shuffled));
+        }
     }
 }
