@@ -221,7 +221,10 @@ mod tests {
         assert!(far[2] > 200 && far[0] < 100, "{far:?}");
         assert_eq!((hole, nothing), (HOLE_AS_ERROR, [0; 3]));
         let caption = shown.caption().unwrap();
-        assert!(caption.contains("20.00 % by more than 1 %; farther") && caption.contains("40.00 % by more"), "{caption}");
+        assert!(
+            caption.contains("20.00 % by more than 1 %; farther") && caption.contains("40.00 % by more"),
+            "{caption}"
+        );
         assert!(caption.contains("holes 20.00 %"), "{caption}");
         assert_eq!([0, 6, 8].map(|pixel| shown.holes().pixels[pixel] == HOLE), [false, true, false]);
         assert_eq!(shown.errors().unwrap().hole_percent, 20.0);
@@ -237,7 +240,10 @@ mod tests {
         assert_eq!(hue(0.0), [1.0, 0.0, 0.0]);
         let caption = shown.caption().unwrap();
         assert!(caption.contains("motion 10.0 px"), "{caption}");
-        assert!(caption.starts_with("PSNR identical, SSIM 1.0000; nearer than real: PSNR identical, 0.00 %"), "{caption}");
+        assert!(
+            caption.starts_with("PSNR identical, SSIM 1.0000; nearer than real: PSNR identical, 0.00 %"),
+            "{caption}"
+        );
     }
 
     #[test]

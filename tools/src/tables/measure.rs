@@ -98,9 +98,7 @@ impl Measure {
             Measure::DifferingPixels => Some(method.differing_pixels_mean),
             Measure::PsnrMean => Some(method.psnr_mean_db.unwrap_or(f64::INFINITY)),
             Measure::PsnrWorst => Some(method.psnr_worst_db.unwrap_or(f64::INFINITY)),
-            Measure::PsnrBetween => {
-                Some(method.psnr_between_db.get(place.against.as_ref()?)?.unwrap_or(f64::INFINITY))
-            }
+            Measure::PsnrBetween => Some(method.psnr_between_db.get(place.against.as_ref()?)?.unwrap_or(f64::INFINITY)),
             Measure::SsimGain | Measure::PsnrGain => None,
         }
     }
@@ -135,7 +133,7 @@ impl Measure {
             Measure::ObjectErrorPercent => small(3),
             Measure::DifferingPixels => small(2),
             Measure::PsnrMean | Measure::PsnrWorst | Measure::PsnrBetween => decimal(value, 1),
-            Measure::SsimGain => format!("{value:.4}"),
+            Measure::SsimGain => format!("{value:.3}"),
             Measure::PsnrGain => format!("{value:.2}"),
         }
     }

@@ -145,7 +145,8 @@ impl Table {
 fn setting(set: &str) -> Result<(&str, &str, &str)> {
     match set.split_once('.') {
         Some((WARP, setting)) => {
-            let (name, value) = setting.split_once('=').with_context(|| format!("--set {set}: write warp.OPTION=VALUE"))?;
+            let (name, value) =
+                setting.split_once('=').with_context(|| format!("--set {set}: write warp.OPTION=VALUE"))?;
             Ok((WARP, name, value))
         }
         _ => parse_setting(set),

@@ -8,8 +8,7 @@ use crate::results::Results;
 /// The table of some runs: by scene, those of the plan. Fits 120 columns.
 pub fn text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>]) -> String {
     let heads = ["objects"].into_iter().chain(table.columns.iter().map(|column| column.head)).collect();
-    let narrow = table.columns.iter().any(|column| column.shows.len() > 1);
-    let mut grid = Grid::new(heads, if narrow { 20 } else { 24 });
+    let mut grid = Grid::new(heads, 0);
     let mut shown: Vec<&str> = Vec::new();
     for runs in scenes {
         let Some(Ran { results: first, .. }) = runs.first() else { continue };
@@ -23,6 +22,7 @@ pub fn text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>]) -> String {
     for scene in table.paper.scenes.iter().filter(|scene| !shown.contains(&scene.name)) {
         published(table, scene, "", &mut grid);
     }
+    grid.fill_width();
     let runs: Vec<&Results> = scenes.iter().flatten().map(|ran| &ran.results).collect();
     let mut lines = vec![format!("{}, table {}: {}", table.paper.name, table.number, table.title)];
     lines.extend(run_lines(&runs));

@@ -87,7 +87,10 @@ fn our_rows_stand_above_the_papers() {
     let plan = small().plan(&[]).unwrap();
     let numbers = [("eovc", 8.0), ("eovc[coherent=false]", 4.0), ("eovc[bvh=equal]", 16.0)];
     let last = ("eovc[bvh=equal,coherent=false]", 2.0);
-    let runs = [vec![run("city-block", 90_000, &numbers)], vec![run("second", 100, &[numbers[0], numbers[1], numbers[2], last])]];
+    let runs = [
+        vec![run("city-block", 90_000, &numbers)],
+        vec![run("second", 100, &[numbers[0], numbers[1], numbers[2], last])],
+    ];
     let expected = "\
 A paper, table 7: a small table
 ours on llvmpipe (cpu) · Mesa
