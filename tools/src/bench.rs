@@ -1,6 +1,8 @@
 //! The main job: methods × frames, once for the clock and once for the truth, into results.
 
-use crate::metrics::{MethodErrors, Truth};
+mod pairs;
+
+use crate::metrics::{FrameImages, MethodErrors, Truth};
 use crate::results::{self, FrameMs, Frames, Results, SCHEMA};
 use crate::run::{Contender, Measured};
 use crate::session::Session;
@@ -9,6 +11,7 @@ use crate::truth::RunTruth;
 use anyhow::{Context, Result};
 use culling::{Entry, Options, VisibleSets, Work};
 use engine::{Capture, FrameReport};
+use pairs::Pair;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,6 +24,8 @@ pub struct BenchOptions {
     pub warmup: usize,
     /// Measure errors against the truth.
     pub metrics: bool,
+    /// Labels of methods whose pictures are compared with each other, the one to compare with first. Needs `metrics`.
+    pub pairs: Vec<[String; 2]>,
     /// The frame to capture, if any.
     pub capture: Option<CaptureOrder>,
     /// Where visible sets are cached.
@@ -63,12 +68,14 @@ pub fn bench(session: &mut Session, mut options: BenchOptions, progress: Progres
     }
     let mut records: Vec<Records> = contenders.iter().map(|_| Records::default()).collect();
     time(session, &mut contenders, &mut records, options.warmup, progress)?;
+    let mut pairs = Pair::of(&options.pairs, &contenders)?;
     if let Some(images) = &truth.run {
-        measure(session, &mut contenders, &mut records, images, &mut options, progress)?;
+        measure(session, &mut contenders, &mut records, images, &mut pairs, &mut options, progress)?;
     }
-    let methods: Vec<_> =
+    let mut methods: Vec<_> =
         contenders.iter().zip(&records).map(|(contender, records)| method(contender, records, shared_mib)).collect();
-    Ok(results(session, &options, methods))
+    pairs.iter().for_each(|pair| pair.report(&mut methods));
+    Ok(Results { methods, ..header(session, &options.command) })
 }
 
 struct MadeTruth {
@@ -130,20 +137,24 @@ fn measure(
     contenders: &mut [Contender],
     records: &mut [Records],
     truth: &RunTruth,
+    pairs: &mut [Pair],
     options: &mut BenchOptions,
     progress: Progress<'_>,
 ) -> Result<()> {
     warm_up(session, contenders, options.warmup)?;
     for frame in 0..session.frames() {
         let truth = truth.frame(session, frame)?;
-        for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
+        let mut pictures = Vec::new();
+        for (place, (contender, records)) in contenders.iter_mut().zip(records.iter_mut()).enumerate() {
             let order = options.capture.as_mut().filter(|order| order.frame == frame);
             let measured = match order {
                 None => contender.measured(session, frame, &truth)?,
                 Some(order) => order.measured(session, contender, &truth)?,
             };
-            records.push(measured);
+            let images = records.push(measured);
+            pictures.push(pairs.iter().any(|pair| pair.needs(place)).then_some(images));
         }
+        pairs.iter_mut().try_for_each(|pair| pair.compare(&pictures))?;
         progress("measuring errors", frame + 1, session.frames());
     }
     Ok(())
@@ -166,12 +177,14 @@ impl Records {
         self.work.iter().map(of).collect()
     }
 
-    fn push(&mut self, measured: Measured) {
+    /// Takes over what was measured, and gives back the pictures.
+    fn push(&mut self, measured: Measured) -> FrameImages {
         self.triangles.push(measured.drawn.triangles);
         self.draws.push(measured.drawn.draws);
         self.overdraw.push(measured.overdraw);
         self.work.push(measured.work);
         self.errors.push(measured.error);
+        measured.images
     }
 }
 
@@ -272,14 +285,15 @@ fn stages(reports: &[FrameReport]) -> Vec<results::Stage> {
     order.into_iter().map(row).collect()
 }
 
-fn results(session: &Session, options: &BenchOptions, methods: Vec<results::Method>) -> Results {
+/// Results of a session without methods: what ran, on what.
+pub fn header(session: &Session, command: &str) -> Results {
     let info = session.gpu.info();
     let text = |value: fn(&engine::AdapterInfo) -> String| info.map(value).unwrap_or_default();
     let given = session.options();
     Results {
         schema: SCHEMA,
         sightline_version: env!("CARGO_PKG_VERSION").to_owned(),
-        command: options.command.clone(),
+        command: command.to_owned(),
         device: results::Device {
             name: text(|info| info.name.clone()),
             kind: text(|info| format!("{:?}", info.kind).to_lowercase()),
@@ -298,7 +312,7 @@ fn results(session: &Session, options: &BenchOptions, methods: Vec<results::Meth
         seed: given.seed,
         size: given.size,
         frames: session.frames() as u32,
-        methods,
+        methods: Vec::new(),
     }
 }
 

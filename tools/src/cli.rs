@@ -42,8 +42,9 @@ pub enum Command {
 }
 
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
-    A table takes its methods and settings from the paper; --set adds what it leaves open.\n\
-    Its path is spread over --frames: 600 is the EOVC thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
+    A table takes its methods and settings from the paper; --set adds what it leaves open (warp.OPTION for a warp on its own).\n\
+    The path of eovc-* is spread over --frames: 600 is the thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
+    woc-* and tog-* walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
 
 /// Which device, and how it is watched.
@@ -122,8 +123,8 @@ pub struct BenchArgs {
     #[command(flatten)]
     pub methods: MethodChoice,
     /// Runs a published table on the scenes (city-block and rooms, unless --scene names some, separated by commas) and
-    /// prints its figures beside ours. The table chooses methods and settings; the path is the whole of closing-in,
-    /// as in the papers' sequences, unless --path names another
+    /// prints its figures beside ours. The table chooses methods and settings; the path is its paper's, the whole of
+    /// closing-in (eovc-*) or a walk (woc-*, tog-*), unless --path names another
     #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["capture", "json"])]
     pub table: Option<String>,
     /// Device.
@@ -141,7 +142,8 @@ pub struct BenchArgs {
     /// Prints each stage: ran or skipped, why, and its time; then the parts of the frame with their share
     #[arg(long)]
     pub explain: bool,
-    /// Folder for results.json and results.csv; of a table, for table-TABLE.txt and a folder with these two for each scene
+    /// Folder for results.json and results.csv; of a table, for table-TABLE.txt and a folder with these
+    /// two (or warps.csv) for each scene, and below it for each size or speed
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Prints results.json instead of the table

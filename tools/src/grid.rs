@@ -34,6 +34,12 @@ impl Grid {
         Self { heads, label_limit, rows: Vec::new() }
     }
 
+    /// Lets labels be as long as the columns leave room for.
+    pub(crate) fn fill_width(&mut self) {
+        let columns: usize = self.widths().iter().map(|width| 2 + width).sum();
+        self.label_limit = WIDTH.saturating_sub(columns);
+    }
+
     /// Lines that a row with this label takes.
     pub(crate) fn lines_of(&self, label: &str) -> usize {
         let length = label.chars().count();
@@ -44,16 +50,20 @@ impl Grid {
         }
     }
 
+    /// Letters of each column.
+    fn widths(&self) -> Vec<usize> {
+        let width = |column: usize| {
+            let cells = self.rows.iter().map(|(_, cells)| cells[column].chars().count());
+            cells.chain([self.heads[column].chars().count()]).max().unwrap_or(0)
+        };
+        (0..self.heads.len()).map(width).collect()
+    }
+
     pub(crate) fn lines(&self, label_head: &str) -> Vec<String> {
         let fitting = self.rows.iter().map(|(label, _)| label.chars().count());
         let fitting = fitting.filter(|&length| length <= self.label_limit);
         let label_width = fitting.chain([label_head.chars().count()]).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.heads.len())
-            .map(|column| {
-                let cells = self.rows.iter().map(|(_, cells)| cells[column].chars().count());
-                cells.chain([self.heads[column].chars().count()]).max().unwrap_or(0)
-            })
-            .collect();
+        let widths = self.widths();
         let line = |label: &str, cells: &mut dyn Iterator<Item = &str>| {
             let mut line = format!("{label:label_width$}");
             for (cell, width) in cells.zip(&widths) {

@@ -16,4 +16,5 @@ pub mod stats;
 pub mod tables;
 pub mod targets;
 pub mod truth;
+pub mod warp_errors;
 pub mod warp_view;

@@ -212,6 +212,16 @@ pub fn compare(truth: &Truth, method: &FrameImages, drawn: &[bool]) -> Result<Fr
     })
 }
 
+/// PSNR in dB between the pictures that two methods made of one frame, over 8-bit RGB, once ties carry the colours of the
+/// first; `None`: identical.
+pub fn psnr_between(one: &FrameImages, other: &FrameImages) -> Result<Option<f64>, MetricError> {
+    let size = |images: &FrameImages| (images.width, images.height);
+    if size(one) != size(other) {
+        return Err(MetricError::Sizes { method: size(other), truth: size(one) });
+    }
+    Ok(picture::psnr_between(one, other))
+}
+
 /// `part / whole`, or `empty` where the whole is nothing.
 fn share_or(part: usize, whole: usize, empty: f64) -> f64 {
     if whole == 0 {

@@ -114,6 +114,10 @@ pub struct Method {
     pub psnr_mean_db: Option<f64>,
     /// The worst frame; `null`: all are identical.
     pub psnr_worst_db: Option<f64>,
+    /// By label of another method of the run: PSNR between the pictures of the two, mean over the frames that differ, ties
+    /// with the other's colours; `null`: no frame differs. Only of those that a table compares.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub psnr_between_db: BTreeMap<String, Option<f64>>,
     /// Structural similarity; 1: identical.
     pub ssim_mean: f64,
     /// Objects drawn.

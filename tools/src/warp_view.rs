@@ -82,7 +82,7 @@ fn median(reports: &[FrameReport]) -> Vec<(String, f64)> {
 }
 
 /// What a warped texel stands for: the farthest depth of its pixels.
-fn farthest_of_blocks(depth: &[f32], [width, height]: [u32; 2], reduction: u32) -> Vec<f32> {
+pub(crate) fn farthest_of_blocks(depth: &[f32], [width, height]: [u32; 2], reduction: u32) -> Vec<f32> {
     let across = width.div_ceil(reduction);
     let mut farthest = vec![f32::INFINITY; (across * height.div_ceil(reduction)) as usize];
     for (row, pixels) in (0..).zip(depth.chunks_exact(width as usize)) {
@@ -96,8 +96,11 @@ fn farthest_of_blocks(depth: &[f32], [width, height]: [u32; 2], reduction: u32) 
 
 impl Warped {
     /// How far the warp is from the truth, on the scale of its pictures.
-    pub fn errors(&self) -> DepthErrors {
-        DepthErrors::of(&self.depth, &self.truth, |depth| self.scale.brightness(depth))
+    ///
+    /// # Errors
+    /// A warp of another size than the truth.
+    pub fn errors(&self) -> Result<DepthErrors> {
+        Ok(DepthErrors::of(&self.depth, &self.truth, self.texels[0], |depth| self.scale.brightness(depth))?)
     }
 
     /// The warped depth as grey, on the truth's scale.
@@ -151,22 +154,30 @@ impl Warped {
     }
 
     /// Errors, motion and times in words.
-    pub fn caption(&self) -> String {
-        let DepthErrors { psnr_db, nearer_psnr_db, farther_psnr_db, nearer_percent, hole_percent } = self.errors();
+    ///
+    /// # Errors
+    /// A warp of another size than the truth.
+    pub fn caption(&self) -> Result<String> {
+        let errors = self.errors()?;
         let decibel = |psnr: Option<f64>| psnr.map_or("identical".to_owned(), |psnr| format!("{psnr:.1} dB"));
         let times: Vec<_> = self.stages.iter().map(|(label, ms)| format!("{label} {ms:.1}")).collect();
         let sum: f64 = self.stages.iter().map(|(_, ms)| ms).sum();
-        format!(
-            "PSNR {} (nearer than real {}, farther {}); {nearer_percent:.2} % nearer by more than {:.0} %, \
-             {hole_percent:.2} % holes; motion {:.1} px in the middle, {:.1} px at most of 95 %; {sum:.1} ms: {}",
-            decibel(psnr_db),
-            decibel(nearer_psnr_db),
-            decibel(farther_psnr_db),
-            100.0 * NOTICED,
+        Ok(format!(
+            "PSNR {}, SSIM {:.4}; nearer than real: PSNR {}, {:.2} % by more than {noticed:.0} %; farther: PSNR {}, {:.2} % \
+             by more than {noticed:.0} %, holes {:.2} %; motion {:.1} px in the middle, {:.1} px at most of \
+             95 %; {sum:.1} ms: {}",
+            decibel(errors.psnr_db),
+            errors.ssim,
+            decibel(errors.nearer_psnr_db),
+            errors.nearer_percent,
+            decibel(errors.farther_psnr_db),
+            errors.farther_percent,
+            errors.hole_percent,
             self.length_at(0.5) * self.reduction as f32,
             self.length_at(0.95) * self.reduction as f32,
-            times.join(", ")
-        )
+            times.join(", "),
+            noticed = 100.0 * NOTICED,
+        ))
     }
 
     fn dimmed(&self, texel: usize) -> [u8; 3] {
@@ -219,8 +230,14 @@ mod tests {
         assert!(near[0] > 200 && near[2] < 100, "{near:?}");
         assert!(far[2] > 200 && far[0] < 100, "{far:?}");
         assert_eq!((hole, nothing), (HOLE_AS_ERROR, [0; 3]));
+        let caption = shown.caption().unwrap();
+        assert!(
+            caption.contains("20.00 % by more than 1 %; farther") && caption.contains("40.00 % by more"),
+            "{caption}"
+        );
+        assert!(caption.contains("holes 20.00 %"), "{caption}");
         assert_eq!([0, 6, 8].map(|pixel| shown.holes().pixels[pixel] == HOLE), [false, true, false]);
-        assert_eq!(shown.errors().hole_percent, 20.0);
+        assert_eq!(shown.errors().unwrap().hole_percent, 20.0);
     }
 
     #[test]
@@ -231,7 +248,12 @@ mod tests {
         assert_eq!(motion.pixels[2], [0; 3]);
         assert!(motion.pixels[0].iter().any(|channel| *channel > 200));
         assert_eq!(hue(0.0), [1.0, 0.0, 0.0]);
-        assert!(shown.caption().contains("motion 10.0 px"), "{}", shown.caption());
+        let caption = shown.caption().unwrap();
+        assert!(caption.contains("motion 10.0 px"), "{caption}");
+        assert!(
+            caption.starts_with("PSNR identical, SSIM 1.0000; nearer than real: PSNR identical, 0.00 %"),
+            "{caption}"
+        );
     }
 
     #[test]

@@ -20,6 +20,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         methods,
         warmup: arguments.warmup as usize,
         metrics: !arguments.no_metrics,
+        pairs: Vec::new(),
         capture,
         cache: cache_folder(),
         command: std::env::args().collect::<Vec<_>>().join(" "),

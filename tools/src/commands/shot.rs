@@ -107,7 +107,7 @@ fn warp_picture(
     shown: fn(&Warped) -> Picture,
 ) -> Result<(Picture, String)> {
     let warped = warp_view::warp(session, contender, frame, settings)?;
-    Ok((shown(&warped), format!(": {}", warped.caption())))
+    Ok((shown(&warped), format!(": {}", warped.caption()?)))
 }
 
 fn tested_boxes(session: &Session, contender: &Contender) -> Result<TestedBoxes> {

@@ -1,58 +1,95 @@
 //! `sightline bench --table`: a published table on several scenes.
 
 use super::{bench::Bar, say};
-use crate::bench::{bench, write, BenchOptions};
+use crate::bench::{bench, header, write, BenchOptions};
 use crate::cli::BenchArgs;
 use crate::files::write_atomically;
 use crate::results::{parts_table, stages_table, Results};
 use crate::session::{cache_folder, Session, SessionOptions};
-use crate::tables::{self, Plan, Table};
+use crate::tables::{self, Plan, PlannedRun, Ran, Table};
+use crate::warp_errors::{warp_errors, write_csv};
 use anyhow::{bail, Context, Result};
+use culling::warp::Settings;
 use engine::Gpu;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The scenes of a table when none is named.
 const SCENES: [&str; 2] = ["city-block", "rooms"];
 
-/// The path of a table when none is named: from outside to among the objects, as in the papers' sequences.
-const PATH: &str = "closing-in";
-
-/// Runs the table's methods on each scene, writes each scene's results and the table, and prints it.
+/// Runs the table's methods on each scene, writes each run's results and the table, and prints it.
 pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
     let table = tables::find(id)?;
     if arguments.no_metrics && table.needs_truth() {
-        bail!("--no-metrics: table {id} shows what is culled, which needs the truth; leave --no-metrics out");
+        bail!("--no-metrics: table {id} shows what is culled or wrong, which needs the truth; leave --no-metrics out");
     }
     let plan = table.plan(&arguments.methods.set)?;
-    let sessions = sessions(arguments)?;
+    let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
-    let mut runs = Vec::new();
+    let mut scenes = Vec::new();
     for (folder, session) in sessions {
-        let results = run_scene(&gpu, arguments, session, &plan)?;
-        write(&results, &arguments.out.join(folder))?;
-        explain(arguments, &results)?;
-        runs.push(results);
+        let mut runs = Vec::new();
+        for planned in &plan.runs {
+            let mut session = session.clone();
+            planned.change.make(&mut session);
+            let ran = run_planned(&gpu, arguments, session, planned)?;
+            let folder = arguments.out.join(&folder);
+            save(&ran, &planned.change.folder().map_or(folder.clone(), |below| folder.join(below)))?;
+            explain(arguments, &ran.results)?;
+            runs.push(ran);
+        }
+        scenes.push(runs);
     }
-    finish(table, &plan, &runs, &arguments.out)
+    finish(table, &plan, &scenes, &arguments.out)
 }
 
-fn run_scene(gpu: &Gpu, arguments: &BenchArgs, session: SessionOptions, plan: &Plan) -> Result<Results> {
+fn run_planned(gpu: &Gpu, arguments: &BenchArgs, session: SessionOptions, planned: &PlannedRun) -> Result<Ran> {
     let name = session.scene.clone();
     let mut session = Session::on(gpu, session)?;
-    let options = BenchOptions {
-        methods: plan.methods.clone(),
-        warmup: arguments.warmup as usize,
-        metrics: !arguments.no_metrics,
-        capture: None,
-        cache: cache_folder(),
-        command: std::env::args().collect::<Vec<_>>().join(" "),
-    };
+    let command = std::env::args().collect::<Vec<_>>().join(" ");
     let bar = Bar::new(&session)?;
     let mut progress = |what: &str, done: usize, all: usize| bar.show(&format!("{name}: {what}"), done, all);
-    let results = bench(&mut session, options, &mut progress)?;
+    let mut warps = BTreeMap::new();
+    for options in &planned.warps {
+        let (label, frames) = (options.label(), session.frames());
+        let mut done = 0;
+        let mut step = || {
+            done += 1;
+            progress(&label, done, frames - 1);
+        };
+        let errors = warp_errors(&mut session, Settings::of(options), &mut step)?;
+        warps.insert(options.label(), errors);
+    }
+    let results = if planned.methods.is_empty() {
+        header(&session, &command)
+    } else {
+        let options = BenchOptions {
+            methods: planned.methods.clone(),
+            warmup: arguments.warmup as usize,
+            metrics: !arguments.no_metrics,
+            pairs: planned.pairs.clone(),
+            capture: None,
+            cache: cache_folder(),
+            command,
+        };
+        bench(&mut session, options, &mut progress)?
+    };
     bar.clear();
-    Ok(results)
+    Ok(Ran { results, warps })
+}
+
+/// Writes what there is: results of methods, errors of warps.
+fn save(ran: &Ran, folder: &Path) -> Result<()> {
+    if !ran.results.methods.is_empty() {
+        write(&ran.results, folder)?;
+    }
+    if !ran.warps.is_empty() {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+        write_csv(&ran.warps, &folder.join("warps.csv"))?;
+    }
+    Ok(())
 }
 
 fn explain(arguments: &BenchArgs, results: &Results) -> Result<()> {
@@ -63,16 +100,21 @@ fn explain(arguments: &BenchArgs, results: &Results) -> Result<()> {
     Ok(())
 }
 
-fn finish(table: &Table, plan: &Plan, runs: &[Results], out: &Path) -> Result<()> {
-    let text = tables::text(table, plan, runs);
+fn finish(table: &Table, plan: &Plan, scenes: &[Vec<Ran>], out: &Path) -> Result<()> {
+    let text = tables::text(table, plan, scenes);
     let file = out.join(format!("table-{}.txt", table.id));
     write_atomically(&file, |to| to.write_all(text.as_bytes()))?;
     say(&text)?;
-    say(&format!("{}, and each scene's results.json and results.csv, are in {}", file.display(), out.display()))
+    let files = if scenes.iter().flatten().any(|ran| !ran.warps.is_empty()) {
+        "each scene's warps.csv"
+    } else {
+        "each scene's results.json and results.csv"
+    };
+    say(&format!("{}, and {files}, are in {}", file.display(), out.display()))
 }
 
 /// Each scene's folder and session.
-fn sessions(arguments: &BenchArgs) -> Result<Vec<(String, SessionOptions)>> {
+fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, SessionOptions)>> {
     let choice = &arguments.scene;
     let scenes: Vec<&str> = match choice.scene.as_slice() {
         [] => SCENES.to_vec(),
@@ -86,7 +128,9 @@ fn sessions(arguments: &BenchArgs) -> Result<Vec<(String, SessionOptions)>> {
         }
         let mut session = choice.session_of(scene);
         if session.path.is_none() {
-            (session.path, session.whole_path) = (Some(PATH.to_owned()), true);
+            let (path, whole) = table.paper.path;
+            session.path = Some(path.to_owned());
+            session.whole_path |= whole;
         }
         sessions.push((folder, session));
     }
@@ -111,25 +155,35 @@ mod tests {
         }
     }
 
+    fn sessions(line: &str) -> Result<Vec<(String, SessionOptions)>> {
+        let arguments = arguments(line);
+        super::sessions(tables::find(arguments.table.as_deref().unwrap()).unwrap(), &arguments)
+    }
+
     #[test]
-    fn a_table_goes_the_whole_closing_in_path_unless_told_otherwise() {
-        let all = sessions(&arguments("--table eovc-2")).unwrap();
+    fn a_table_goes_its_papers_path_unless_told_otherwise() {
+        let all = sessions("--table eovc-2").unwrap();
         assert_eq!(all.iter().map(|(folder, _)| folder.as_str()).collect::<Vec<_>>(), SCENES);
-        assert!(all.iter().all(|(_, session)| session.path.as_deref() == Some(PATH) && session.whole_path));
-        let (folder, walk) = sessions(&arguments("--table eovc-2 --scene a/model.glb --path walk")).unwrap().remove(0);
+        assert!(all.iter().all(|(_, session)| session.path.as_deref() == Some("closing-in") && session.whole_path));
+        let warped = sessions("--table woc-1").unwrap();
+        assert!(warped.iter().all(|(_, session)| session.path.as_deref() == Some("walk") && !session.whole_path));
+        assert!(sessions("--table woc-1 --whole-path").unwrap()[0].1.whole_path);
+        let (folder, walk) = sessions("--table eovc-2 --scene a/model.glb --path walk").unwrap().remove(0);
         assert_eq!((folder.as_str(), walk.scene.as_str()), ("model", "a/model.glb"));
         assert_eq!((walk.path.as_deref(), walk.whole_path), (Some("walk"), false));
     }
 
     #[test]
     fn two_scenes_of_one_folder_are_refused() {
-        let error = sessions(&arguments("--table eovc-2 --scene a/model.glb,b/model.glb")).unwrap_err().to_string();
+        let error = sessions("--table eovc-2 --scene a/model.glb,b/model.glb").unwrap_err().to_string();
         assert!(error.contains("b/model.glb and a/model.glb") && error.contains("folder model"), "{error}");
     }
 
     #[test]
     fn a_table_of_culled_objects_needs_the_truth() {
-        let error = run(&arguments("--table eovc-5 --no-metrics"), "eovc-5").unwrap_err().to_string();
-        assert!(error.contains("needs the truth"), "{error}");
+        for id in ["eovc-5", "woc-1", "woc-3", "tog-2", "tog-7"] {
+            let error = run(&arguments(&format!("--table {id} --no-metrics")), id).unwrap_err().to_string();
+            assert!(error.contains(id) && error.contains("needs the truth"), "{error}");
+        }
     }
 }

@@ -55,13 +55,8 @@ pub(super) struct Likeness {
     pub ssim: f64,
 }
 
-/// Ties are replaced by the truth's colours first, so that they cost nothing.
 pub(super) fn likeness(truth: &FrameImages, method: &FrameImages) -> Result<Likeness, MetricError> {
-    let wanted = rgb_image(truth, |pixel| truth.colour[pixel]);
-    let found = rgb_image(truth, |pixel| match class_of(truth, method, pixel) {
-        PixelClass::Tied => truth.colour[pixel],
-        _ => method.colour[pixel],
-    });
+    let (wanted, found) = pictures(truth, method);
     let psnr_db = psnr_db(&wanted, &found);
     // Identical pictures need no windows: exactly 1, whatever the rounding, and at no cost for exact methods.
     let ssim = match psnr_db {
@@ -69,6 +64,22 @@ pub(super) fn likeness(truth: &FrameImages, method: &FrameImages) -> Result<Like
         Some(_) => ssim(&wanted, &found)?,
     };
     Ok(Likeness { psnr_db, ssim })
+}
+
+/// PSNR between the pictures of two frames of one size over 8-bit RGB, ties aside; `None`: identical.
+pub(super) fn psnr_between(one: &FrameImages, other: &FrameImages) -> Option<f64> {
+    let (wanted, found) = pictures(one, other);
+    psnr_db(&wanted, &found)
+}
+
+/// Ties are replaced by the truth's colours first, so that they cost nothing.
+fn pictures(truth: &FrameImages, method: &FrameImages) -> (RgbImage, RgbImage) {
+    let wanted = rgb_image(truth, |pixel| truth.colour[pixel]);
+    let found = rgb_image(truth, |pixel| match class_of(truth, method, pixel) {
+        PixelClass::Tied => truth.colour[pixel],
+        _ => method.colour[pixel],
+    });
+    (wanted, found)
 }
 
 /// The size is that of `like`; alpha is dropped.

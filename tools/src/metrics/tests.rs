@@ -286,3 +286,20 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn two_methods_are_compared_without_the_truth() {
+    let one = picture();
+    assert_eq!(psnr_between(&one, &one).unwrap(), None);
+    // A tie is as alike as the truth's ties are.
+    let mut tied = picture();
+    (tied.items[0], tied.colour[0]) = (69, [255, 255, 255, 255]);
+    assert_eq!(psnr_between(&one, &tied).unwrap(), None);
+    let mut other = picture();
+    (other.depth[0], other.colour[0]) = (0.9, [100, 255, 128, 255]);
+    let mean = 100.0f64.powi(2) / f64::from(WIDTH * HEIGHT * 3);
+    let expected = 10.0 * (255.0f64.powi(2) / mean).log10();
+    assert!((psnr_between(&one, &other).unwrap().unwrap() - expected).abs() < 1e-9);
+    other.width = 12;
+    assert!(matches!(psnr_between(&one, &other), Err(MetricError::Sizes { .. })));
+}

@@ -94,7 +94,8 @@ impl Method {
             let at = |field: &str| format!("stages[{index}].{field}");
             [(at("median_ms"), Some(stage.median_ms)), (at("share"), Some(stage.share))]
         });
-        let mut all = scalars.into_iter().chain(stages).chain(self.frames.numbers());
+        let between = self.psnr_between_db.iter().map(|(label, psnr)| (format!("psnr_between_db.{label}"), *psnr));
+        let mut all = scalars.into_iter().chain(stages).chain(between).chain(self.frames.numbers());
         all.find(|(_, value)| value.is_some_and(|v| !v.is_finite())).map(|(name, _)| name)
     }
 }

@@ -167,6 +167,8 @@ fn what_breaks_the_contract_is_not_written() {
     assert!(twice.contains("methods[2].label: `none` is there twice"), "{twice}");
     let nan = refused(|r| r.methods[1].psnr_worst_db = Some(f64::NAN));
     assert!(nan.contains("methods[1].psnr_worst_db: is not a finite number"), "{nan}");
+    let nan = refused(|r| _ = r.methods[1].psnr_between_db.insert("none".into(), Some(f64::NAN)));
+    assert!(nan.contains("methods[1].psnr_between_db.none: is not a finite number"), "{nan}");
     let nan = refused(|r| r.methods[1].frames.psnr_db[1] = Some(f64::INFINITY));
     assert!(nan.contains("methods[1].frames.psnr_db[1]"), "{nan}");
     let nan = refused(|r| r.methods[1].stages[2].share = f64::NAN);

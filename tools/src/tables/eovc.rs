@@ -8,11 +8,12 @@ const PAPER: Paper = Paper {
     name: "EOVC thesis",
     measured_on: "GeForce GTX 2080 Ti, OpenGL, 1920x1080",
     seconds: 10.0,
+    path: ("closing-in", true),
     scenes: &[
-        PaperScene { name: "FN", ours: "fantasy", objects: 7_437 },
-        PaperScene { name: "FC", ours: "factory", objects: 46_600 },
-        PaperScene { name: "RC", ours: "radial-city", objects: 73_812 },
-        PaperScene { name: "ST", ours: "satellite", objects: 120_000 },
+        PaperScene { name: "FN", ours: "fantasy", objects: Some(7_437) },
+        PaperScene { name: "FC", ours: "factory", objects: Some(46_600) },
+        PaperScene { name: "RC", ours: "radial-city", objects: Some(73_812) },
+        PaperScene { name: "ST", ours: "satellite", objects: Some(120_000) },
     ],
 };
 
@@ -25,12 +26,22 @@ const CR: &[(&str, &str)] = &[("of", "false"), ("cr", "true")];
 const OF: &[(&str, &str)] = &[("of", "true"), ("every", "1"), ("cr", "false")];
 const CR_OF: &[(&str, &str)] = &[("of", "true"), ("every", "1"), ("cr", "true")];
 
-const fn plain(head: &'static str, method: &'static str) -> Column {
-    Column { head, method, settings: &[] }
+const TIME: &[Measure] = &[Measure::FrameMs];
+const SHARES: &[Measure] = &[Measure::CulledOverTotal, Measure::CulledOverRef];
+
+/// Frame times, published with one decimal.
+const fn time(head: &'static str, method: &'static str) -> Column {
+    Column::new(head, method, TIME, 1)
 }
 
+/// Frame times of EOVC, published with two decimals.
 const fn eovc(head: &'static str, settings: &'static [(&'static str, &'static str)]) -> Column {
-    Column { head, method: "eovc", settings }
+    Column::new(head, "eovc", TIME, 2).with(settings)
+}
+
+/// C/N and C/R.
+const fn shares(head: &'static str, method: &'static str) -> Column {
+    Column::new(head, method, SHARES, 2)
 }
 
 /// NA, CR, OF and CR+OF, as in tables 3 and 4.
@@ -42,19 +53,17 @@ pub(super) const TABLE_2: Table = Table {
     title: "mean frame time of the culling methods in ms",
     paper: &PAPER,
     number: 2,
-    decimals: 1,
     columns: &[
-        plain("NOC", "none"),
-        plain("VFC", "frustum"),
-        plain("CHC++", "chc++"),
-        plain("ROC", "roc"),
-        plain("WOC", "woc"),
-        plain("REF", "ref"),
-        eovc("OF", OF),
-        eovc("CR+OF", CR_OF),
+        time("NOC", "none"),
+        time("VFC", "frustum"),
+        time("CHC++", "chc++"),
+        time("ROC", "roc"),
+        time("WOC", "woc"),
+        time("REF", "ref"),
+        time("OF", "eovc").with(OF),
+        time("CR+OF", "eovc").with(CR_OF),
     ],
     variants: ONE_ROW,
-    measures: &[Measure::FrameMs],
     ratio: Ratio::Over("ROC"),
     published: &[
         Published { scene: "FN", figures: &[4.8, 3.3, 8.8, 1.4, 3.3, 0.8, 1.2, 1.8] },
@@ -71,10 +80,8 @@ pub(super) const TABLE_3: Table = Table {
     title: "mean frame time of eovc's accelerations in ms",
     paper: &PAPER,
     number: 3,
-    decimals: 2,
     columns: ACCELERATIONS,
     variants: ONE_ROW,
-    measures: &[Measure::FrameMs],
     ratio: Ratio::SpeedUp("NA"),
     published: &[
         Published { scene: "FN", figures: &[1.37, 2.21, 1.17, 1.83] },
@@ -91,14 +98,12 @@ pub(super) const TABLE_4: Table = Table {
     title: "mean frame time of eovc by how its hierarchy is split, in ms",
     paper: &PAPER,
     number: 4,
-    decimals: 2,
     columns: ACCELERATIONS,
     variants: &[
-        Variant { name: "SAH", settings: &[("bvh", "sah")] },
-        Variant { name: "MID", settings: &[("bvh", "middle")] },
-        Variant { name: "EQ", settings: &[("bvh", "equal")] },
+        Variant::set("SAH", &[("bvh", "sah")]),
+        Variant::set("MID", &[("bvh", "middle")]),
+        Variant::set("EQ", &[("bvh", "equal")]),
     ],
-    measures: &[Measure::FrameMs],
     ratio: Ratio::OverFirstVariant,
     published: &[
         Published { scene: "FN", figures: &[1.37, 2.21, 1.17, 1.83, 1.39, 2.26, 1.29, 1.83, 1.41, 2.17, 1.22, 1.90] },
@@ -118,18 +123,16 @@ pub(super) const TABLE_5: Table = Table {
     title: "culling efficiency: C/N and C/R (culled over all objects, and over those that REF culls)",
     paper: &PAPER,
     number: 5,
-    decimals: 2,
     columns: &[
-        plain("VFC", "frustum"),
-        plain("CHC++", "chc++"),
-        plain("ROC", "roc"),
-        plain("WOC", "woc"),
-        plain("REF", "ref"),
-        eovc("EOVC CR", CR),
-        eovc("CR+OF", CR_OF),
+        shares("VFC", "frustum"),
+        shares("CHC++", "chc++"),
+        shares("ROC", "roc"),
+        shares("WOC", "woc"),
+        shares("REF", "ref"),
+        shares("EOVC CR", "eovc").with(CR),
+        shares("CR+OF", "eovc").with(CR_OF),
     ],
     variants: ONE_ROW,
-    measures: &[Measure::CulledOverTotal, Measure::CulledOverRef],
     ratio: Ratio::None,
     published: &[
         Published {

@@ -1,19 +1,26 @@
 //! The papers' tables, run on our scenes and printed beside what was published: `sightline bench --table ID`.
 //!
 //! A table is one entry of [`TABLES`]: which methods with which settings stand in its columns and rows, what is measured,
-//! and the published figures, which are in one module per paper (`tables/eovc.rs`).
+//! and the published figures, which are in one module per paper (`tables/eovc.rs`, `tables/woc.rs`, `tables/tog.rs`).
 
 mod eovc;
+mod measure;
+mod plan;
 mod print;
 #[cfg(test)]
 mod tests;
+mod tog;
+mod woc;
 
+pub use measure::{Measure, Stages};
+pub use plan::{Chosen, Place, Plan, PlannedRun};
 pub use print::text;
 
-use crate::cli::parse_setting;
-use crate::results::Method;
-use anyhow::{bail, Context, Result};
-use culling::{Entry, Options};
+use crate::metrics::DepthErrors;
+use crate::results::Results;
+use crate::session::SessionOptions;
+use anyhow::{Context, Result};
+use std::collections::BTreeMap;
 
 /// A published table and how to run it again.
 #[derive(Debug)]
@@ -26,15 +33,11 @@ pub struct Table {
     pub paper: &'static Paper,
     /// Number of the table in the paper.
     pub number: u32,
-    /// Decimals of the published figures.
-    pub decimals: usize,
     /// Methods from left to right.
     pub columns: &'static [Column],
     /// Settings from top to bottom, within each scene.
     pub variants: &'static [Variant],
-    /// What stands in a cell, one number each.
-    pub measures: &'static [Measure],
-    /// What a cell's first number is compared with, on the line below.
+    /// What a cell's first number is compared with, on the line below, if it is a time.
     pub ratio: Ratio,
     /// The published figures by scene, in the paper's order.
     pub published: &'static [Published],
@@ -51,6 +54,8 @@ pub struct Paper {
     pub measured_on: &'static str,
     /// How long its camera sequences last.
     pub seconds: f64,
+    /// The path of ours that stands for its sequences, and whether a run goes the whole of it.
+    pub path: (&'static str, bool),
     /// Its scenes.
     pub scenes: &'static [PaperScene],
 }
@@ -62,8 +67,8 @@ pub struct PaperScene {
     pub name: &'static str,
     /// The name of the scene of ours that is built after it.
     pub ours: &'static str,
-    /// Objects in the paper.
-    pub objects: u64,
+    /// Objects in the paper; none if it does not say.
+    pub objects: Option<u64>,
 }
 
 /// A method with settings, and its name at the head of a column.
@@ -71,33 +76,92 @@ pub struct PaperScene {
 pub struct Column {
     /// The paper's name.
     pub head: &'static str,
-    /// The method's id in [`culling::METHODS`]. A method that is not there has an empty column.
+    /// The method's id in [`culling::METHODS`], or `warp` for depth warping on its own. What is neither has an empty column.
     pub method: &'static str,
     /// Options and values.
     pub settings: &'static [(&'static str, &'static str)],
+    /// What stands in a cell, one number each.
+    pub shows: &'static [Measure],
+    /// Decimals of the published figures.
+    pub decimals: usize,
+    /// What the method is compared with, where the measure is of two.
+    pub against: Option<&'static Column>,
 }
 
-/// Settings that all of a row's methods share.
+impl Column {
+    /// A method with its default settings.
+    const fn new(head: &'static str, method: &'static str, shows: &'static [Measure], decimals: usize) -> Self {
+        Column { head, method, settings: &[], shows, decimals, against: None }
+    }
+
+    /// A method with settings.
+    const fn with(self, settings: &'static [(&'static str, &'static str)]) -> Self {
+        Column { settings, ..self }
+    }
+
+    /// A method compared with another.
+    const fn against(self, other: &'static Column) -> Self {
+        Column { against: Some(other), ..self }
+    }
+}
+
+/// What all of a row's methods share.
 #[derive(Debug)]
 pub struct Variant {
     /// The paper's name; empty in a table with one row a scene.
     pub name: &'static str,
     /// Options and values.
     pub settings: &'static [(&'static str, &'static str)],
+    /// What it changes of the run itself.
+    pub change: Change,
+}
+
+impl Variant {
+    /// A row of other settings.
+    const fn set(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Self {
+        Variant { name, settings, change: Change::Nothing }
+    }
+
+    /// A row of another run.
+    const fn run(name: &'static str, change: Change) -> Self {
+        Variant { name, settings: &[], change }
+    }
 }
 
 /// The only variant of a table with one row a scene.
-const ONE_ROW: &[Variant] = &[Variant { name: "", settings: &[] }];
+const ONE_ROW: &[Variant] = &[Variant::set("", &[])];
 
-/// What a cell holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// Mean frame time in milliseconds.
-    FrameMs,
-    /// Objects culled over all, C/N.
-    CulledOverTotal,
-    /// Objects culled over those that ideal culling culls, C/R.
-    CulledOverRef,
+/// What a variant changes of the run itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// Nothing.
+    Nothing,
+    /// Each side of the picture is so many times as long.
+    Size(f64),
+    /// The camera goes so many times as fast.
+    Speed(f64),
+    /// It needs this, which Sightline does not have: the row stays empty.
+    NotYet(&'static str),
+}
+
+impl Change {
+    /// Makes the change.
+    pub fn make(self, session: &mut SessionOptions) {
+        match self {
+            Change::Size(times) => session.size = session.size.map(|side| (f64::from(side) * times).round() as u32),
+            Change::Speed(times) => session.speed *= times,
+            Change::Nothing | Change::NotYet(_) => {}
+        }
+    }
+
+    /// The folder of a changed run below its scene's; none if nothing is changed.
+    pub fn folder(self) -> Option<String> {
+        match self {
+            Change::Size(times) => Some(format!("size-{times}x")),
+            Change::Speed(times) => Some(format!("speed-{times}x")),
+            Change::Nothing | Change::NotYet(_) => None,
+        }
+    }
 }
 
 /// What stands below a line of numbers.
@@ -122,11 +186,29 @@ pub struct Published {
     pub figures: &'static [f64],
 }
 
-/// A method as it stands in a table: entry and settings.
-pub type Chosen = (&'static Entry, Options);
+/// What one run of a plan came to.
+#[derive(Debug)]
+pub struct Ran {
+    /// Scene, device, path and the methods; of a run of warps alone, without methods.
+    pub results: Results,
+    /// By a warp's label: its errors in each frame that has one before it.
+    pub warps: BTreeMap<String, Vec<DepthErrors>>,
+}
 
 /// Every table that can be run again.
-pub const TABLES: &[&Table] = &[&eovc::TABLE_2, &eovc::TABLE_3, &eovc::TABLE_4, &eovc::TABLE_5];
+pub const TABLES: &[&Table] = &[
+    &eovc::TABLE_2,
+    &eovc::TABLE_3,
+    &eovc::TABLE_4,
+    &eovc::TABLE_5,
+    &woc::TABLE_1,
+    &woc::TABLE_2,
+    &woc::TABLE_3,
+    &tog::TABLE_2,
+    &tog::TABLE_5,
+    &tog::TABLE_6,
+    &tog::TABLE_7,
+];
 
 /// The table of that name.
 pub fn find(id: &str) -> Result<&'static Table> {
@@ -138,69 +220,19 @@ pub fn find(id: &str) -> Result<&'static Table> {
         .with_context(|| format!("no table '{id}'; there are: {}", ids()))
 }
 
-/// What a table runs.
-#[derive(Debug, Default)]
-pub struct Plan {
-    /// The methods, each once, in the order of the table.
-    pub methods: Vec<Chosen>,
-    /// By variant and column, in this order: the method's label in results, or none where there is no such method.
-    pub labels: Vec<Option<String>>,
-}
-
 impl Table {
-    /// What to run. `sets` are what the user set beyond the table (`METHOD.OPTION=VALUE`).
-    ///
-    /// # Errors
-    /// A method that lacks an option the table needs, or a setting of the user's that the table makes itself.
-    pub fn plan(&self, sets: &[String]) -> Result<Plan> {
-        let mut plan = Plan::default();
-        let places = self.variants.iter().flat_map(|variant| self.columns.iter().map(move |column| (variant, column)));
-        for (variant, column) in places {
-            let chosen = self.chosen(variant, column, sets)?;
-            plan.labels.push(chosen.as_ref().map(|(_, options)| options.label()));
-            let Some(chosen) = chosen else { continue };
-            if plan.methods.iter().all(|(_, options)| options.label() != chosen.1.label()) {
-                plan.methods.push(chosen);
-            }
-        }
-        Ok(plan)
-    }
-
-    /// The method of one place, or none if there is no such method.
-    fn chosen(&self, variant: &Variant, column: &Column, sets: &[String]) -> Result<Option<Chosen>> {
-        let Some(entry) = culling::METHODS.iter().find(|entry| entry.id == column.method) else { return Ok(None) };
-        let mut options = entry.default_options();
-        let own = || column.settings.iter().chain(variant.settings);
-        for set in sets {
-            let (method, name, value) = parse_setting(set)?;
-            if method != entry.id {
-                continue;
-            }
-            if own().any(|(own, _)| *own == name) {
-                bail!("--set {set}: table {} sets {method}.{name} itself; leave it out", self.id);
-            }
-            options.set(name, value).with_context(|| format!("--set {set}"))?;
-        }
-        for (name, value) in own() {
-            let needs = || format!("table {} cannot be run: its column {} needs {name}={value}", self.id, column.head);
-            options.set(name, value).with_context(needs)?;
-        }
-        Ok(Some((entry, options)))
-    }
-
     /// True if a cell needs the comparison with the truth.
     pub fn needs_truth(&self) -> bool {
-        self.measures.iter().any(|measure| *measure != Measure::FrameMs)
+        self.columns.iter().flat_map(|column| column.shows).any(|measure| measure.needs_truth())
     }
-}
 
-impl Measure {
-    /// What a method's results say.
-    pub fn of(self, method: &Method) -> f64 {
-        match self {
-            Measure::FrameMs => method.frame_ms.mean,
-            Measure::CulledOverTotal => method.culled_over_total,
-            Measure::CulledOverRef => method.culled_over_ref,
-        }
+    /// Numbers in a row.
+    fn numbers_in_row(&self) -> usize {
+        self.columns.iter().map(|column| column.shows.len()).sum()
+    }
+
+    /// Where a column's numbers begin in a row.
+    fn first_number(&self, column: usize) -> usize {
+        self.columns[..column].iter().map(|column| column.shows.len()).sum()
     }
 }

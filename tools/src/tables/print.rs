@@ -1,55 +1,78 @@
 //! A table as text: our scenes' rows, each above the paper's row of the same scene or of the nearest, then the paper's others.
 
-use super::{Measure, PaperScene, Plan, Published, Ratio, Table};
-use crate::grid::{milliseconds, Grid};
+use super::measure::decimal;
+use super::{Column, Measure, PaperScene, Place, Plan, Published, Ran, Ratio, Table};
+use crate::grid::Grid;
 use crate::results::Results;
 
-/// The table of some runs, one a scene. Fits 120 columns.
-pub fn text(table: &Table, plan: &Plan, runs: &[Results]) -> String {
+/// The table of some runs: by scene, those of the plan. Fits 120 columns.
+pub fn text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>]) -> String {
     let heads = ["objects"].into_iter().chain(table.columns.iter().map(|column| column.head)).collect();
-    let mut grid = Grid::new(heads, if table.measures.len() > 1 { 20 } else { 24 });
+    let mut grid = Grid::new(heads, 0);
     let mut shown: Vec<&str> = Vec::new();
-    for run in runs {
-        let ours =
-            Block { name: run.scene.name.clone(), objects: run.scene.objects, numbers: numbers(table, plan, run) };
-        ours.rows(table, &|value| our_number(table.measures, value), &mut grid);
-        let Some((scene, how)) = counterpart(table, run) else { continue };
+    for runs in scenes {
+        let Some(Ran { results: first, .. }) = runs.first() else { continue };
+        let (name, objects) = (first.scene.name.clone(), Some(first.scene.objects));
+        let ours = Block { name, objects, numbers: numbers(table, plan, runs), ours: true };
+        ours.rows(table, &mut grid);
+        let Some((scene, how)) = counterpart(table, first) else { continue };
         published(table, scene, how, &mut grid);
         shown.push(scene.name);
     }
     for scene in table.paper.scenes.iter().filter(|scene| !shown.contains(&scene.name)) {
         published(table, scene, "", &mut grid);
     }
+    grid.fill_width();
+    let runs: Vec<&Results> = scenes.iter().flatten().map(|ran| &ran.results).collect();
     let mut lines = vec![format!("{}, table {}: {}", table.paper.name, table.number, table.title)];
-    lines.extend(run_lines(runs));
+    lines.extend(run_lines(&runs));
     lines.push(String::new());
     lines.extend(grid.lines("scene"));
     lines.push(String::new());
-    lines.extend(notes(table, plan, runs));
+    lines.extend(notes(table, &runs));
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
 /// The lines of one scene: for each variant its numbers, and below them their ratios.
 struct Block {
     name: String,
-    objects: u64,
+    objects: Option<u64>,
     /// By variant, column and measure.
     numbers: Vec<Option<f64>>,
+    /// Written as ours, otherwise with the paper's decimals.
+    ours: bool,
 }
 
 impl Block {
-    fn rows(&self, table: &Table, show: &dyn Fn(&[Option<f64>]) -> String, grid: &mut Grid) {
-        let (columns, measures) = (table.columns.len(), table.measures.len());
+    fn rows(&self, table: &Table, grid: &mut Grid) {
+        let (columns, width) = (table.columns.len(), table.numbers_in_row());
         let ratios = ratios(table, &self.numbers);
-        for (index, variant) in table.variants.iter().enumerate() {
-            let row = &self.numbers[index * columns * measures..(index + 1) * columns * measures];
-            let cells = [self.objects.to_string()].into_iter().chain(row.chunks(measures).map(show));
+        let rows = table.variants.iter().zip(self.numbers.chunks(width));
+        for (index, (variant, row)) in rows.enumerate() {
+            if row.iter().all(Option::is_none) && table.variants.len() > 1 {
+                continue;
+            }
+            let objects = self.objects.map_or("-".to_owned(), |objects| objects.to_string());
             let name = [self.name.as_str(), variant.name].join(" ");
-            grid.rows.push((name.trim_end().to_owned(), cells.collect()));
+            grid.rows.push((name.trim_end().to_owned(), [objects].into_iter().chain(self.cells(table, row)).collect()));
             let Some(label) = ratio_label(table, index) else { continue };
             let row = ratios[index * columns..(index + 1) * columns].iter().map(|ratio| two_decimals(*ratio));
             grid.rows.push((format!("  {label}"), [String::new()].into_iter().chain(row).collect()));
         }
+    }
+
+    fn cells(&self, table: &Table, row: &[Option<f64>]) -> Vec<String> {
+        let cell = |index: usize| {
+            let column = &table.columns[index];
+            let values = &row[table.first_number(index)..];
+            let one = |(measure, value): (&Measure, &Option<f64>)| match value {
+                None => "-".to_owned(),
+                Some(value) if self.ours => measure.shown(*value),
+                Some(value) => decimal(*value, column.decimals),
+            };
+            column.shows.iter().zip(values).map(one).collect::<Vec<_>>().join(" ")
+        };
+        (0..table.columns.len()).map(cell).collect()
     }
 }
 
@@ -64,11 +87,14 @@ fn ratio_label(table: &Table, variant: usize) -> Option<String> {
     }
 }
 
-/// By variant and column: a cell's first number against its base.
+/// By variant and column: a cell's first number against its base; none of what is no time.
 fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<Option<f64>> {
-    let (columns, measures) = (table.columns.len(), table.measures.len());
+    let (columns, width) = (table.columns.len(), table.numbers_in_row());
     let column_of = |head: &str| table.columns.iter().position(|column| column.head == head);
-    let at = |variant: usize, column: usize| numbers[(variant * columns + column) * measures];
+    let at = |variant: usize, column: usize| {
+        let is_time = table.columns[column].shows[0].is_time();
+        numbers[variant * width + table.first_number(column)].filter(|_| is_time)
+    };
     let one = |place: usize| {
         let (variant, column) = (place / columns, place % columns);
         let (part, base) = match table.ratio {
@@ -83,47 +109,36 @@ fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<Option<f64>> {
     (0..table.variants.len() * columns).map(one).collect()
 }
 
-fn numbers(table: &Table, plan: &Plan, run: &Results) -> Vec<Option<f64>> {
-    let of_place = |label: &Option<String>| {
-        let method = label.as_ref().and_then(|label| run.method(label));
-        table.measures.iter().map(move |measure| method.map(|method| measure.of(method)))
+fn numbers(table: &Table, plan: &Plan, runs: &[Ran]) -> Vec<Option<f64>> {
+    let columns = table.columns.iter().cycle();
+    let of_place = |(place, column): (&Option<Place>, &Column)| {
+        let number = |measure: &Measure| {
+            let place = place.as_ref()?;
+            measure.of(runs.get(place.run)?, place)
+        };
+        column.shows.iter().map(number).collect::<Vec<_>>()
     };
-    plan.labels.iter().flat_map(of_place).collect()
+    plan.places.iter().zip(columns).flat_map(of_place).collect()
 }
 
 /// The paper's row under ours: the same scene by name, otherwise the one with the nearest number of objects.
 fn counterpart(table: &Table, run: &Results) -> Option<(&'static PaperScene, &'static str)> {
-    let scenes = table.paper.scenes;
-    if let Some(same) = scenes.iter().find(|scene| scene.ours == run.scene.name) {
+    let is_published = |scene: &&PaperScene| table.published.iter().any(|row| row.scene == scene.name);
+    let scenes = || table.paper.scenes.iter().filter(is_published);
+    if let Some(same) = scenes().find(|scene| scene.ours == run.scene.name) {
         return Some((same, " (same)"));
     }
-    let times_larger = |scene: &&PaperScene| (scene.objects as f64 / run.scene.objects.max(1) as f64).ln().abs();
-    let nearest = scenes.iter().min_by(|a, b| times_larger(a).total_cmp(&times_larger(b)));
-    nearest.map(|scene| (scene, " (nearest)"))
+    let times_larger = |objects: u64| (objects as f64 / run.scene.objects.max(1) as f64).ln().abs();
+    let known = scenes().filter_map(|scene| Some((scene, times_larger(scene.objects?))));
+    let nearest = known.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    nearest.map(|(scene, _)| (scene, " (nearest)"))
 }
 
 fn published(table: &Table, scene: &PaperScene, how: &str, grid: &mut Grid) {
     let Some(Published { figures, .. }) = table.published.iter().find(|row| row.scene == scene.name) else { return };
     let name = format!("paper {}{how}", scene.name);
     let numbers = figures.iter().copied().map(Some).collect();
-    let show = |values: &[Option<f64>]| {
-        let decimals = table.decimals;
-        let shown = values.iter().map(|value| value.map_or("-".into(), |value| format!("{value:.decimals$}")));
-        shown.collect::<Vec<_>>().join(" ")
-    };
-    Block { name, objects: scene.objects, numbers }.rows(table, &show, grid);
-}
-
-/// Our numbers with what digits they deserve. Shares are cut, not rounded: 1.000 is said only of all.
-fn our_number(measures: &[Measure], values: &[Option<f64>]) -> String {
-    let one = |(measure, value): (&Measure, &Option<f64>)| match (value, measure) {
-        (None, _) => "-".to_owned(),
-        (Some(value), Measure::FrameMs) => milliseconds(*value),
-        (Some(value), Measure::CulledOverTotal | Measure::CulledOverRef) => {
-            format!("{:.3}", (value * 1000.0).floor() / 1000.0)
-        }
-    };
-    measures.iter().zip(values).map(one).collect::<Vec<_>>().join(" ")
+    Block { name, objects: scene.objects, numbers, ours: false }.rows(table, grid);
 }
 
 fn two_decimals(ratio: Option<f64>) -> String {
@@ -131,7 +146,7 @@ fn two_decimals(ratio: Option<f64>) -> String {
 }
 
 /// What ran, on what: a line for the device, and one for each scene.
-fn run_lines(runs: &[Results]) -> Vec<String> {
+fn run_lines(runs: &[&Results]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for run in runs {
         let device = format!("ours on {} ({}) · {}", run.device.name, run.device.kind, run.device.driver);
@@ -145,7 +160,7 @@ fn run_lines(runs: &[Results]) -> Vec<String> {
     lines
 }
 
-fn notes(table: &Table, plan: &Plan, runs: &[Results]) -> Vec<String> {
+fn notes(table: &Table, runs: &[&Results]) -> Vec<String> {
     let mut lines = vec![
         format!("{}: measured on {}.", table.paper.name, table.paper.measured_on),
         "Compare ratios, not milliseconds. (same): our scene is built after the paper's; (nearest): another scene, whose".to_owned(),
@@ -154,12 +169,9 @@ fn notes(table: &Table, plan: &Plan, runs: &[Results]) -> Vec<String> {
     if runs.iter().any(|run| run.device.kind == "cpu") {
         lines.push("Ours ran on a cpu device: its times show that the methods run, and are no results.".to_owned());
     }
-    let missing: Vec<&str> = (table.columns.iter().zip(&plan.labels))
-        .filter(|(_, label)| label.is_none())
-        .map(|(column, _)| column.method)
-        .collect();
+    let missing = table.missing();
     if !missing.is_empty() {
-        lines.push(format!("-: Sightline does not have these methods yet: {}.", missing.join(", ")));
+        lines.push(format!("Empty or left out is what Sightline does not have yet: {}.", missing.join(", ")));
     }
     lines.extend(table.notes.iter().map(|note| (*note).to_owned()));
     let frames = table.paper.seconds * 60.0;
