@@ -11,6 +11,7 @@ use anyhow::{bail, Context, Result};
 use culling::warp::{Settings, Warp};
 use culling::View;
 use engine::{Buffer, Placement};
+use shaders::types::DEPTH_FAR;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -34,7 +35,8 @@ pub fn warp_errors(session: &mut Session, settings: Settings, step: &mut dyn FnM
         let mut f = session.gpu.frame();
         warp.frame(&mut f, &session.world, &view, warped.all())?;
         f.finish().with_context(|| format!("warping to frame {frame}"))?;
-        let predicted = warped.read()?;
+        // Holes, which are farther than far, are compared as far.
+        let predicted: Vec<f32> = warped.read()?.into_iter().map(|depth| depth.max(DEPTH_FAR)).collect();
         let truth = draw_everything(session, frame)?.depth;
         keep(session, &mut warp, &view)?;
         let scale = DepthScale::of(&truth);
