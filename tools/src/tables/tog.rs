@@ -22,7 +22,7 @@ const SLOWER: &str =
 const ERODED: &str =
     "woc erodes the warped depth, as Kim's thesis does; this paper does not say so: --set woc.erode=false.";
 const ERODED_BOTH: &str =
-    "woc and awoc erode the warped depth, as Kim's thesis does; this paper does not: --set woc.erode=false, awoc.erode=false.";
+    "woc and awoc erode the warp (Kim's thesis; not said in this paper): --set woc.erode=false --set awoc.erode=false.";
 
 /// "The number of used search seeds (N) was 8" (5.3).
 const EIGHT_SEEDS: &[(&str, &str)] = &[("seeds", "8")];
