@@ -87,6 +87,8 @@ pub struct FindRapid {
     pub rapid: BufferRef<u32>,
     /// `threshold` in GLSL.
     pub threshold: f32,
+    /// `first_command` in GLSL.
+    pub first_command: u32,
 }
 
 impl Stage for FindRapid {
@@ -102,7 +104,7 @@ impl Stage for FindRapid {
             BindingInfo { name: "views", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "rapid", binding: 6, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
-        push_size: 4,
+        push_size: 8,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -111,7 +113,7 @@ impl Stage for FindRapid {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = FindRapidPush { threshold: self.threshold };
+        let push = FindRapidPush { threshold: self.threshold, first_command: self.first_command };
         BoundStage::new(
             Self::INFO,
             vec![
@@ -135,11 +137,13 @@ impl ComputeStage for FindRapid {}
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FindRapidPush {
     threshold: f32,
+    first_command: u32,
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(FindRapidPush, threshold) == 0);
-    assert!(size_of::<FindRapidPush>() == 4);
+    assert!(std::mem::offset_of!(FindRapidPush, first_command) == 4);
+    assert!(size_of::<FindRapidPush>() == 8);
 };
 
 /// Costly objects that the image-space test leaves visible are not drawn yet: their boxes are to prove that

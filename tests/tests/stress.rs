@@ -89,6 +89,37 @@ fn hzb_loses_nothing() {
     stress("hzb", |_| Subject::named("hzb"));
 }
 
+/// `woc-exact` in one of its many ways, by seed: most of them careless, so that there is much to repair.
+fn woc_exact(seed: u64) -> Subject {
+    let mut random = Random::new(seed ^ 0x0a11_ace5);
+    let sets: [(&str, &[&str]); 12] = [
+        ("size", &["1", "2", "4"]),
+        ("structure", &["y-map", "n-buffer", "mip"]),
+        ("seeds", &["1", "2", "5"]),
+        ("iterations", &["1", "4"]),
+        ("steps", &["0", "3"]),
+        ("tile", &["1", "4", "16"]),
+        ("oriented", &["false", "true"]),
+        ("erode", &["false", "true"]),
+        ("close", &["false", "true"]),
+        ("rapid", &["0", "0.005", "0.02", "0.08"]),
+        ("hybrid-triangles", &["0", "5", "100000"]),
+        ("commands", &["packed", "zero-instance", "shuffled"]),
+    ];
+    let subject = Subject::named("woc-exact");
+    sets.iter().fold(subject, |subject, (option, values)| subject.with(option, values[random.below(values.len())]))
+}
+
+#[test]
+fn woc_exact_loses_nothing() {
+    stress("woc_exact", woc_exact);
+}
+
+#[test]
+fn hom_loses_nothing() {
+    stress("hom", |_| Subject::named("hom"));
+}
+
 #[test]
 fn worlds_by_chance_show_and_hide_something() {
     let gpu = gpu();

@@ -172,15 +172,17 @@ impl DrawList {
         stages.iter().for_each(|stage| f.skip(stage.name, reason));
     }
 
-    /// The commands of this list and how many of them count, by kind of primitive; those without an instance draw nothing.
-    pub(crate) fn commands<'a>(
-        &'a self,
-        world: &'a World,
-    ) -> impl Iterator<Item = (BufferRef<DrawCommand>, BufferRef<u32>)> + 'a {
+    /// The commands of this list, of all kinds of primitive.
+    pub(crate) fn commands(&self) -> BufferRef<DrawCommand> {
+        self.commands.all()
+    }
+
+    /// Of each kind of primitive: its first command, and how many of them count; those without an instance draw nothing.
+    pub(crate) fn counts<'a>(&'a self, world: &'a World) -> impl Iterator<Item = (u32, BufferRef<u32>)> + 'a {
         assert_eq!(self.world, world.id(), "this list was made for another world: make the method again");
         world.ranges().iter().enumerate().map(|(index, range)| {
             let count = self.everything.get(index).unwrap_or(&self.totals[index]);
-            (self.commands.all().from(range.first as usize), count.all())
+            (range.first, count.all())
         })
     }
 

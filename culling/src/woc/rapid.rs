@@ -71,9 +71,9 @@ impl Rapid {
     }
 
     fn find(&self, f: &mut Frame, world: &World, kept: BufferRef<u32>, list: &DrawList) {
-        for (commands, count) in list.commands(world) {
+        for (first_command, count) in list.counts(world) {
             let stage = woc::FindRapid {
-                commands,
+                commands: list.commands(),
                 count,
                 kept,
                 bounds_before: self.bounds_before.as_ref().map_or(world.bounds(), Buffer::all),
@@ -81,6 +81,7 @@ impl Rapid {
                 views: self.views.all(),
                 rapid: self.flags.all(),
                 threshold: self.threshold,
+                first_command,
             };
             f.dispatch(stage, RAPID_INVOCATIONS);
         }

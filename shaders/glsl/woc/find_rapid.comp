@@ -19,7 +19,7 @@ layout(set = 0, binding = 4, scalar) readonly buffer BoundsNow { Bounds items[];
 layout(set = 0, binding = 5, scalar) readonly buffer Views { CullView items[]; } views;
 // By object: 1 if it is rapid; others stay as they are.
 layout(set = 0, binding = 6, scalar) buffer Rapid { uint items[]; } rapid;
-layout(push_constant, scalar) uniform Push { float threshold; } push;
+layout(push_constant, scalar) uniform Push { float threshold; uint first_command; } push;
 
 vec4 corner_of(ClipBox box, uint corner) {
     return box.centre + ((corner & 1u) != 0u ? box.axis_x : -box.axis_x) + ((corner & 2u) != 0u ? box.axis_y : -box.axis_y)
@@ -44,8 +44,9 @@ bool is_rapid(Bounds before, Bounds now) {
 void main() {
     uint commands_that_count = count.items[0];
     for (uint index = invocation_index(); index < commands_that_count; index += RAPID_INVOCATIONS) {
-        uint object = commands.items[index].first_instance;
-        if (commands.items[index].instance_count != 0u && kept.items[object] != 0u
+        uint place = push.first_command + index;
+        uint object = commands.items[place].first_instance;
+        if (commands.items[place].instance_count != 0u && kept.items[object] != 0u
             && is_rapid(bounds_before.items[object], bounds_now.items[object]))
             rapid.items[object] = 1u;
     }

@@ -70,6 +70,7 @@ fn run(gpu: &Gpu, input: &Input, threshold: f32) -> Vec<u32> {
         views: views.all(),
         rapid: rapid.all(),
         threshold,
+        first_command: 0,
     };
     let mut f = gpu.frame();
     f.dispatch(stage, RAPID_INVOCATIONS);
