@@ -6,9 +6,9 @@ use crate::warp::{ITERATIONS, LOOKUPS, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD
 use crate::world::SKIP_OPTION;
 use crate::{OptionInfo, Options};
 
-/// How much smaller warp and map are than the picture: half, by measurement, which is faster than full size and misses fewer
-/// objects, as each texel stands for its farthest pixel (README).
-pub(super) const SIZE: OptionInfo = OptionInfo { default: "2", ..SIZE_OPTION };
+/// How much smaller warp and map are than the picture: a quarter, by measurement, which is faster than full size and misses
+/// fewer objects, as each texel stands for its farthest pixel (README).
+pub(super) const SIZE: OptionInfo = OptionInfo { default: "4", ..SIZE_OPTION };
 
 /// Erosion of the warped depth.
 pub(super) const ERODE: OptionInfo = OptionInfo {
