@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use support::ItemBuffer;
 
 fn make(name: &str, scale: f64, seed: u64) -> Scene {
-    open(name, &SceneOptions { scale, seed }).expect("a procedural scene opens")
+    open(name, &SceneOptions { scale, seed, ..Default::default() }).expect("a procedural scene opens")
 }
 
 /// Each vertex as the GPU turns it: see `clip_from_object` in shaders/glsl/include/transform.glsl.
@@ -222,7 +222,7 @@ fn errors_say_what_to_do() {
     std::fs::remove_file(&file).expect("the file can be removed");
     assert!(message.contains(".obj is not supported; convert it"), "{message}");
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let result = open("boxes", &SceneOptions { scale, seed: 1 });
+        let result = open("boxes", &SceneOptions { scale, seed: 1, ..Default::default() });
         assert!(matches!(result, Err(SceneError::Unknown { .. })), "scale {scale}");
     }
 }

@@ -1,0 +1,58 @@
+//! Where things are: whether a place is within an object's solid, and whether a box may be in view.
+
+use crate::support::{clip_from_world, outside};
+use glam::{DAffine3, DVec3};
+use scenes::{Aabb, Scene, Shot, WorldBounds};
+
+/// The boxes of all objects: most of them do not hold a place, and need no closer look.
+pub struct InsideTest {
+    boxes: Vec<Aabb>,
+}
+
+impl InsideTest {
+    pub fn new(scene: &Scene) -> Self {
+        let bounds = WorldBounds::new(scene);
+        let of = |object: &scenes::Object| bounds.of(object.mesh, &object.world_from_object);
+        InsideTest { boxes: scene.objects.iter().map(of).collect() }
+    }
+
+    /// The first object that has the place within its solid at a time.
+    pub fn solid_around(&self, scene: &Scene, at: DVec3, seconds: f64) -> Option<usize> {
+        let mut moved = Vec::new();
+        scene.motion.transforms_at(seconds, &mut moved);
+        let moving = moved.iter().map(|(object, place)| (*object as usize, *place));
+        let still = (0..scene.objects.len())
+            .filter(|&object| !scene.objects[object].dynamic && self.boxes[object].contains(at))
+            .map(|object| (object, scene.objects[object].world_from_object));
+        moving.chain(still).find(|(object, place)| is_inside(scene, *object, place, at)).map(|(object, _)| object)
+    }
+}
+
+/// Crossings outward minus crossings inward along a ray: above 0 within one closed part at least.
+fn is_inside(scene: &Scene, object: usize, world_from_object: &DAffine3, at: DVec3) -> bool {
+    let mesh = &scene.meshes[scene.objects[object].mesh as usize];
+    let from = world_from_object.inverse().transform_point3(at);
+    // Aslant, so that it meets no edge of what stands upright.
+    let along = DVec3::new(0.314, 0.859, 0.403);
+    let crossing = |triangle: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|corner| mesh.positions[triangle[corner] as usize].as_dvec3() - from);
+        let sides = [a.cross(b).dot(along), b.cross(c).dot(along), c.cross(a).dot(along)];
+        let ahead = a.dot((b - a).cross(c - a)) * along.dot((b - a).cross(c - a)) > 0.0;
+        match (sides.iter().all(|&side| side > 0.0), sides.iter().all(|&side| side < 0.0)) {
+            (true, _) if ahead => 1,
+            (_, true) if ahead => -1,
+            _ => 0,
+        }
+    };
+    mesh.indices.chunks_exact(3).map(crossing).sum::<i32>() > 0
+}
+
+/// False if a box is beyond one plane of the view.
+pub fn may_be_in_view(bounds: &Aabb, shot: &Shot, aspect: f64) -> bool {
+    let clip_from_world = clip_from_world(&shot.pose, &shot.projection, aspect);
+    let corner = |number: usize| {
+        let pick = |axis: usize| if number >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        clip_from_world * DVec3::new(pick(0), pick(1), pick(2)).extend(1.0)
+    };
+    !outside(&[0, 1, 2, 3, 4, 5, 6, 7].map(corner))
+}
