@@ -142,8 +142,13 @@ fn the_camera_sees_something_in_every_frame() {
             for frame in 0..9 {
                 let picture = ItemBuffer::draw(&scene, &path.sample(frame, 9), 80, 45);
                 let (visible, covered) = (picture.visible(), picture.covered());
-                // The few tangles are looked past when the camera turns.
-                assert!(visible >= 3 && covered > 0.02, "{} {name}, frame {frame}: {visible}, {covered}", entry.name);
+                // A few tangles can be looked past, but not their ground.
+                let least = if scene.objects.len() < 10 { 1 } else { 4 };
+                assert!(
+                    visible >= least && covered > 0.02,
+                    "{} {name}, frame {frame}: {visible}, {covered}",
+                    entry.name
+                );
             }
         }
     }
@@ -168,12 +173,26 @@ fn the_camera_is_in_no_solid() {
     }
 }
 
+#[test]
+fn a_place_within_a_solid_is_noticed() {
+    let scene = make("moving-balloons", 0.02, 1);
+    let test = InsideTest::new(&scene);
+    let mut later = Vec::new();
+    scene.motion.transforms_at(3.0, &mut later);
+    // 2 m above its origin is the middle of a balloon, 9 m below it that of its basket, and in between is air.
+    for (pair, place) in later.chunks_exact(2).enumerate() {
+        let found = |up: f64| test.solid_around(&scene, place[0].1.transform_point3(DVec3::Y * up), 3.0);
+        let both = (Some(2 * pair), Some(2 * pair + 1), None);
+        assert_eq!((found(2.0), found(-9.1), found(-6.5)), both, "pair {pair}");
+    }
+}
+
 /// Objects seen, and objects whose boxes are at least partly in the view.
 fn seen_of_those_in_view(scene: &Scene, shot: &Shot) -> (usize, usize) {
     let bounds = WorldBounds::new(scene);
     let boxes = scene.objects.iter().map(|object| bounds.of(object.mesh, &object.world_from_object));
     let in_view = boxes.filter(|bounds| may_be_in_view(bounds, shot, 16.0 / 9.0)).count();
-    (ItemBuffer::draw(scene, shot, 160, 90).visible(), in_view)
+    (ItemBuffer::draw(scene, shot, 320, 180).visible(), in_view)
 }
 
 /// How much of what is in view shows where the camera comes to rest: in the open scenes much, among houses and halls little.
@@ -186,7 +205,7 @@ fn scenes_are_as_open_as_their_papers_say() {
         assert!((seen as f64) < most * in_view as f64, "{name}: {seen} of {in_view}");
     }
     // "Which has many unoccluded spaces", and of Kim's monsters "culling is generally not effective".
-    let least_seen = [("satellite", 0.05, 0.2), ("monsters", 0.5, 0.1), ("fantasy", 0.5, 0.1)];
+    let least_seen = [("satellite", 0.02, 0.2), ("monsters", 0.5, 0.1), ("fantasy", 0.5, 0.1)];
     for (name, scale, least) in least_seen {
         let scene = make(name, scale, 0);
         let (seen, in_view) = seen_of_those_in_view(&scene, &path(&scene, "closing-in").sample(0, 3));

@@ -327,6 +327,16 @@ mod tests {
     }
 
     #[test]
+    fn a_level_of_detail_reaches_the_session() {
+        let level = |line: &str| match Cli::parse_from(line.split(' ')).command {
+            Command::Shot(arguments) => arguments.scene.session().unwrap().detail,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(level("sightline shot"), SceneOptions::default().detail);
+        assert_eq!(level("sightline shot --scene powerplant --detail-level 3"), 3);
+    }
+
+    #[test]
     fn sizes_are_read_or_refused() {
         assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
         for bad in ["0x5", "12", "axb", "-1x5", "1x2x3"] {

@@ -125,10 +125,10 @@ impl Swarm {
         Swarm { layers, side: (cells / layers as f64).sqrt().ceil() as usize + 1 }
     }
 
-    /// Straight through from one side, aslant to the rows.
+    /// Straight through from a little within one side, aslant to the rows.
     fn way(&self) -> Vec<DVec3> {
         let half = 0.5 * self.side as f64 * CELL.z;
-        vec![DVec3::new(-0.1 * half, 0.0, half), DVec3::new(0.2 * half, 4.0, -half)]
+        vec![DVec3::new(-0.1 * half, 0.0, 0.75 * half), DVec3::new(0.2 * half, 4.0, -half)]
     }
 
     /// Middles of balloons that leave the way free.

@@ -31,8 +31,8 @@ impl Nature {
         let mut chance = Random::new(0, 77);
         Nature {
             trees: [
-                assembly.built("oak", detail, |parts| broad(parts, &mut chance, fine, 7)),
-                assembly.built("beech", detail, |parts| broad(parts, &mut chance, fine, 5)),
+                assembly.built("oak", detail, |parts| broad(parts, &mut chance, fine, 8)),
+                assembly.built("beech", detail, |parts| broad(parts, &mut chance, fine, 6)),
                 assembly.built("fir", detail, |parts| conifer(parts, fine, 5)),
                 assembly.built("spruce", detail, |parts| conifer(parts, fine, 7)),
             ],

@@ -191,7 +191,7 @@ mod tests {
                         |u: f32| Vec3::new((TAU * u).cos(), 0.2 * (2.0 * TAU * u).sin(), (TAU * u).sin()) * 4.0;
                     parts.tube(around, [128, 32], 1.0, true);
                 },
-                0.5 * TAU * 27.2,
+                0.5 * TAU * 26.1,
             ),
             // Both rods whole, and of the ball what lies outside of them, counted as often as parts hold it.
             ("pipe", |parts| parts.pipe(&[Vec3::ZERO, Vec3::X * 9.0, Vec3::new(9.0, 9.0, 0.0)], 1.0, 32), 75.0),

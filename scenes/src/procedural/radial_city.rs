@@ -250,11 +250,11 @@ fn meshes(assembly: &mut Assembly, detail: Detail) -> Meshes {
             parts.tapered([-0.5, 0.0, -0.5], [0.5, 1.0, 0.5], 0.46, 0.46);
         }),
         tree: assembly.built("tree", detail, |parts| {
-            parts.lathe([0.0; 3], &[[0.0, 0.0], [0.25, 0.0], [0.2, 2.6]], 4);
+            parts.lathe([0.0; 3], &[[0.25, 0.0], [0.2, 2.6]], 4);
             parts.lathe([0.0; 3], &[[0.0, 2.4], [2.1, 3.4], [0.0, 8.5]], 6);
         }),
         lamp: assembly.built("lamp", detail, |parts| {
-            parts.tapered([-0.07, 0.0, -0.07], [0.07, 5.5, 0.07], 0.03, 0.03);
+            parts.lathe([0.0; 3], &[[0.09, 0.0], [0.06, 5.5]], 3);
             parts.cuboid([-0.1, 5.4, -0.6], [0.1, 5.55, 0.6]);
         }),
         car: assembly.built("car", detail, |parts| {

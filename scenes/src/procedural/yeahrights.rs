@@ -7,7 +7,7 @@
 use super::detail::Detail;
 use super::parts::Parts;
 use super::random::Random;
-use super::terrain::Terrain;
+use super::terrain::{Terrain, TILE};
 use super::{camera, count, lane, posed, shade, Assembly, SceneOptions};
 use crate::model::{Scene, Walk};
 use glam::{DVec3, Quat, Vec3};
@@ -16,8 +16,6 @@ use std::f32::consts::TAU;
 /// Objects at scale 1, the ground's tiles among them.
 const OBJECTS: usize = 60;
 const LEAST_OBJECTS: usize = 8;
-/// The ground is this many tiles wide.
-const GROUND: usize = 2;
 /// Distance between tangles in metres; each has a radius of 1.
 const PITCH: f64 = 2.7;
 const EYE: f64 = 1.6;
@@ -34,17 +32,18 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let detail = Detail::new(options.detail);
     let mut random = Random::new(options.seed, 0);
     let mut assembly = Assembly::new("yeahrights");
-    let tangles = target - GROUND * GROUND;
-    // A third of the places go to the way.
-    let side = (1.5 * tangles as f64 + 4.0).sqrt().ceil() as usize;
+    // A third of the places go to the way, and the ground reaches 2 m farther.
+    let side = (1.5 * target as f64 + 4.0).sqrt().ceil() as usize;
+    let ground_tiles = ((side as f64 * PITCH + 4.0) / TILE).ceil() as usize;
+    let tangles = target - ground_tiles * ground_tiles;
     let ground = Terrain::new(&mut random, 0.5, [0.5 * side as f64 * PITCH, 0.0]);
-    ground.place(&mut assembly, &mut random, detail, GROUND, [0.36, 0.38, 0.33]);
+    ground.place(&mut assembly, &mut random, detail, ground_tiles, [0.36, 0.38, 0.33]);
     let shapes: Vec<u32> = (0..SHAPES.min(tangles))
         .map(|shape| assembly.built("tangle", detail, |parts| tangle(parts, &mut random, shape)))
         .collect();
     let half = 0.5 * side as f64 * PITCH;
     let eye = DVec3::Y * EYE;
-    let way = vec![DVec3::new(-0.2, 0.0, half + 1.2) + eye, DVec3::new(0.15 * half, 0.0, -half) + eye];
+    let way = vec![DVec3::new(-0.2, 0.0, half + 0.4) + eye, DVec3::new(0.15 * half, 0.0, -half) + eye];
     let mut placed = 0;
     for place in 0.. {
         if placed == tangles {
@@ -52,8 +51,11 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         }
         // Rows beyond the square, if the way takes more places than were set aside.
         let (column, row) = (place % side, place / side);
-        let aside = DVec3::new(random.range(-0.2, 0.2), random.range(0.0, 0.5), random.range(-0.2, 0.2));
-        let at = DVec3::new((column as f64 + 0.5) * PITCH - half, 1.35, half - (row as f64 + 0.5) * PITCH) + aside;
+        // Every other row stands in the gaps of the one before.
+        let shift = 0.5 * PITCH * ((row % 2) as f64 - 0.5);
+        let aside = DVec3::new(random.range(-0.25, 0.25), random.range(0.0, 1.2), random.range(-0.25, 0.25));
+        let at =
+            DVec3::new((column as f64 + 0.5) * PITCH - half + shift, 1.35, half - (row as f64 + 0.5) * PITCH) + aside;
         if lane::distance(&way, at) < 1.5 {
             continue;
         }

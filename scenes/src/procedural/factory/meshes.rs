@@ -10,7 +10,8 @@ use std::f32::consts::FRAC_PI_2;
 /// Indices of the factory's meshes.
 pub(super) struct Meshes {
     pub slab: u32,
-    pub walls: [u32; 3],
+    pub wall: u32,
+    pub windows: u32,
     pub gate: u32,
     pub pillar: u32,
     pub roof: u32,
@@ -45,11 +46,8 @@ impl Meshes {
         let mut add = |name: &str, build: fn(&mut Parts)| assembly.built(name, detail, build);
         Meshes {
             slab: add("slab", |parts| parts.cuboid([-0.5, 0.0, -0.5], [0.5, 1.0, 0.5])),
-            walls: [
-                add("wall", |parts| wall(parts, 1)),
-                add("wall high", |parts| wall(parts, 2)),
-                add("wall blind", |parts| wall(parts, 0)),
-            ],
+            wall: add("wall", wall),
+            windows: add("windows", windows),
             gate: add("gate", gate),
             pillar: add("pillar", |parts| parts.cuboid([-0.45, -0.5, -0.45], [0.45, HIGH + 0.4, 0.45])),
             roof: add("roof", |parts| parts.gable([-3.06, -0.2, -15.6], [3.06, 3.4, 15.6])),
@@ -82,18 +80,23 @@ impl Meshes {
     }
 }
 
-/// Below, rows of windows of four panes stand out of the wall, and ribs.
-fn wall(parts: &mut Parts, rows: usize) {
+/// A plinth and ribs stand out of it.
+fn wall(parts: &mut Parts) {
     parts.cuboid([-0.05, -0.6, -0.3], [LONG + 0.05, HIGH, 0.0]);
     parts.tapered([-0.04, -0.6, -0.1], [LONG + 0.04, 0.9, 0.1], 0.0, 0.03);
     for rib in [0.3, LONG - 0.5] {
         parts.cuboid([rib, 0.8, -0.1], [rib + 0.2, HIGH - 0.1, 0.12]);
     }
-    for row in 0..rows {
+}
+
+/// Two rows of panes with bars, for a piece of wall.
+fn windows(parts: &mut Parts) {
+    for row in 0..2 {
         let y = 2.4 + 2.6 * row as f32;
         for pane in 0..2 {
             let x = 0.9 + 2.2 * pane as f32;
             parts.tapered([x, y, -0.05], [x + 1.9, y + 1.7, 0.06], 0.03, 0.0);
+            parts.cuboid([x + 0.9, y, -0.02], [x + 0.98, y + 1.7, 0.09]);
         }
     }
 }
@@ -192,7 +195,7 @@ fn bridge(parts: &mut Parts) {
 fn barrel(parts: &mut Parts) {
     let profile =
         [[0.0, 0.02], [0.29, 0.0], [0.29, 0.29], [0.31, 0.31], [0.29, 0.33], [0.29, 0.88], [0.27, 0.88], [0.0, 0.86]];
-    parts.lathe([0.0; 3], &profile, 14);
+    parts.lathe([0.0; 3], &profile, 9);
 }
 
 fn pallet(parts: &mut Parts) {

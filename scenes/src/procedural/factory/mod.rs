@@ -19,7 +19,7 @@ use meshes::Meshes;
 const OBJECTS: usize = 46_600;
 const LEAST_OBJECTS: usize = 150;
 /// About how many objects a hall with its streets has; decides how wide the factory is for its count.
-const OBJECTS_A_HALL: f64 = 400.0;
+const OBJECTS_A_HALL: f64 = 430.0;
 /// Length of a piece of wall or roof in metres; the meshes are made for it.
 pub(super) const PANEL: f64 = 6.0;
 /// Pieces of wall along x and z.
@@ -40,6 +40,7 @@ const WALLS: [[f32; 3]; 5] =
 const PAINT: [[f32; 3]; 6] =
     [[0.6, 0.18, 0.12], [0.16, 0.32, 0.55], [0.68, 0.54, 0.12], [0.2, 0.42, 0.25], [0.5, 0.5, 0.52], [0.3, 0.3, 0.32]];
 const STEEL: [f32; 3] = [0.45, 0.46, 0.48];
+const GLASS: [f32; 3] = [0.14, 0.2, 0.26];
 const WOOD: [f32; 3] = [0.5, 0.38, 0.22];
 
 /// The builder's hands: where things go, what there is to place, and chance.
@@ -104,7 +105,7 @@ impl Builder {
             self.put(lamp, STEEL, at + DVec3::new(along, -0.02, STREET - 0.9), 0);
         }
         self.pipe_rack(at);
-        for _ in 0..5 {
+        for _ in 0..8 {
             let along = self.random.range(STREET + 2.0, PITCH[0] - 3.0);
             self.heap(at + DVec3::new(along, 0.0, STREET - 2.2));
             let along = self.random.range(STREET + 3.0, PITCH[1] - 3.0);
@@ -184,11 +185,15 @@ impl Builder {
                 2 => DVec3::new(along, 0.0, HALL[1] + out),
                 _ => DVec3::new(HALL[0] + out, 0.0, HALL[1] - along),
             };
-            let mesh = match piece {
-                _ if piece == pieces / 2 => self.meshes.gate,
-                _ => self.random.pick(&self.meshes.walls),
-            };
-            self.put(mesh, colour, at + place, [2, 3, 0, 1][side as usize]);
+            let turns = [2, 3, 0, 1][side as usize];
+            if piece == pieces / 2 {
+                self.put(self.meshes.gate, colour, at + place, turns);
+                continue;
+            }
+            self.put(self.meshes.wall, colour, at + place, turns);
+            if self.random.chance(0.7) {
+                self.put(self.meshes.windows, GLASS, at + place, turns);
+            }
         }
         let corner = [DVec3::ZERO, DVec3::new(0.0, 0.0, HALL[1])];
         if side < 2 {

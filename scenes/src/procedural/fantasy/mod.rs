@@ -38,7 +38,7 @@ const EYE: f64 = 1.7;
 /// How far the walk goes at speed 1, in metres.
 const WALK: f64 = 75.0;
 /// Sides of what is round, at level of detail 1.
-const FINE: usize = 11;
+const FINE: usize = 15;
 
 const PLASTER: [[f32; 3]; 4] = [[0.72, 0.66, 0.54], [0.66, 0.56, 0.44], [0.6, 0.6, 0.56], [0.7, 0.6, 0.5]];
 const ROOFS: [[f32; 3]; 4] = [[0.5, 0.2, 0.14], [0.36, 0.24, 0.2], [0.24, 0.28, 0.36], [0.45, 0.3, 0.14]];
@@ -229,6 +229,6 @@ impl Builder {
     /// Once around a lane.
     fn walk(&self) -> Walk {
         let lane = LANE + LANES_APART * ((self.lanes() - 1) / 2) as f64;
-        Walk { points: lane::ring(DVec3::ZERO, lane, 0.7, |_| PLATEAU + EYE), length: WALK, clearance: 1.0 }
+        Walk { points: lane::ring(DVec3::ZERO, lane, 1.2, |_| PLATEAU + EYE), length: WALK, clearance: 1.0 }
     }
 }

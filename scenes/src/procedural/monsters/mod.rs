@@ -55,10 +55,22 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let nature = Nature::new(&mut assembly, detail, FINE);
     terrain.place(&mut assembly, &mut random, detail, tiles, [0.34, 0.42, 0.2]);
     let mut builder = Builder { assembly, meshes, nature, random, terrain, way, half };
+    // Something to look at from the camera's first place.
+    let ahead = builder.ahead();
+    builder.camp(ahead);
+    for _ in 0..3 {
+        builder.herd(ahead);
+    }
     while builder.assembly.len() < target {
         match builder.random.below(10) {
-            0 => builder.camp(),
-            1 | 2 => builder.herd(),
+            0 => {
+                let at = builder.anywhere();
+                builder.camp(at);
+            }
+            1..=5 => {
+                let at = builder.anywhere();
+                builder.herd(at);
+            }
             _ => builder.grove(),
         }
     }
@@ -76,6 +88,12 @@ impl Builder {
         let most = self.half - 6.0;
         let (x, z) = (self.random.range(-most, most), self.random.range(-most, most));
         self.terrain.on(x, z)
+    }
+
+    /// Before the camera, as far as two pieces of its way; nearer the middle of the land.
+    fn ahead(&self) -> DVec3 {
+        let at = 0.9 * (self.way[0] + 2.0 * (self.way[1] - self.way[0]));
+        self.terrain.on(at.x, at.z)
     }
 
     /// Somewhere near a place, on the land.
@@ -96,19 +114,17 @@ impl Builder {
     }
 
     /// Monsters of one kind, large and small.
-    fn herd(&mut self) {
-        let middle = self.anywhere();
+    fn herd(&mut self, middle: DVec3) {
         let kind = self.random.pick(&self.meshes.monsters);
         let hide = self.random.pick(&HIDES);
         for _ in 0..4 + self.random.below(9) {
-            let (at, size) = (self.near(middle, 11.0), self.random.range(0.6, 1.5));
+            let (at, size) = (self.near(middle, 12.0), self.random.range(0.6, 1.5));
             self.stand(kind, &[hide], at, size, 1.8);
         }
     }
 
     /// Huts around a fire, with a fence, totems and bones.
-    fn camp(&mut self) {
-        let middle = self.anywhere();
+    fn camp(&mut self, middle: DVec3) {
         for hut in 0..3 {
             let angle = TAU * f64::from(hut) / 3.0 + 0.4 * self.random.unit();
             let at = self.terrain.on(middle.x + 8.0 * angle.cos(), middle.z + 8.0 * angle.sin());

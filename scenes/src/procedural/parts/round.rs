@@ -113,7 +113,7 @@ impl Parts {
             self.rod(piece[0], piece[1], radius, sides);
         }
         for bend in corners.iter().skip(1).take(corners.len().saturating_sub(2)) {
-            self.globe(*bend, Vec3::splat(1.15 * radius), [sides / 2, sides], |_| 1.0);
+            self.globe(*bend, Vec3::splat(1.15 * radius), [sides.div_ceil(3), sides], |_| 1.0);
         }
         let ends = [[0, 1], [corners.len() - 1, corners.len() - 2]];
         for [end, next] in ends {

@@ -6,7 +6,7 @@ use crate::procedural::parts::Parts;
 use crate::procedural::random::Random;
 use crate::procedural::Assembly;
 use glam::{Affine3A, Vec3};
-use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// Indices of the power plant's meshes.
 pub(super) struct Meshes {
@@ -105,12 +105,12 @@ fn brace(parts: &mut Parts) {
 }
 
 fn grating(parts: &mut Parts) {
-    for slat in 0..30 {
-        let z = 0.05 + slat as f32 / 30.0 * LONG;
+    for slat in 0..17 {
+        let z = 0.05 + slat as f32 / 17.0 * LONG;
         parts.cuboid([0.02, -0.01, z], [LONG - 0.02, 0.03, z + 0.035]);
     }
-    for cross in 0..7 {
-        let x = 0.1 + cross as f32 / 7.0 * LONG;
+    for cross in 0..5 {
+        let x = 0.1 + cross as f32 / 5.0 * LONG;
         parts.cuboid([x, -0.03, 0.03], [x + 0.03, 0.02, LONG - 0.03]);
     }
 }
@@ -139,14 +139,14 @@ fn tray(parts: &mut Parts) {
     for z in [-0.25, 0.22] {
         parts.cuboid([0.0, 0.0, z], [LONG, 0.12, z + 0.03]);
     }
-    for rung in 0..16 {
-        let x = 0.1 + rung as f32 / 16.0 * LONG;
+    for rung in 0..10 {
+        let x = 0.1 + rung as f32 / 10.0 * LONG;
         parts.cuboid([x, 0.01, -0.24], [x + 0.04, 0.03, 0.24]);
     }
-    for cable in 0..4 {
+    for cable in 0..3 {
         let z = -0.15 + 0.1 * cable as f32;
         let sway = move |u: f32| Vec3::new(0.02 + u * (LONG - 0.04), 0.07, z + 0.03 * (9.0 * u + 2.0 * z).sin());
-        parts.tube(sway, [10, 5], 0.035, false);
+        parts.tube(sway, [6, 5], 0.035, false);
     }
 }
 
@@ -157,11 +157,11 @@ fn vessel(parts: &mut Parts) {
         let y = 0.5 + 1.2 * band as f32;
         parts.lathe([0.0, y, 0.0], &[[1.85, 0.0], [2.0, 0.0], [2.0, 0.16], [1.85, 0.16]], 32);
     }
-    for nozzle in 0..7 {
+    for nozzle in 0..5 {
         let angle = nozzle as f32 * 2.3;
         let out = Vec3::new(angle.cos(), 0.0, angle.sin());
-        let at = Vec3::Y * (0.9 + 0.55 * nozzle as f32);
-        parts.pipe(&[at + out * 1.8, at + out * 2.3, at + out * 2.3 + Vec3::Y * 0.5], 0.12, 10);
+        let at = Vec3::Y * (0.9 + 0.8 * nozzle as f32);
+        parts.pipe(&[at + out * 1.8, at + out * 2.3, at + out * 2.3 + Vec3::Y * 0.5], 0.12, 8);
     }
 }
 
@@ -205,16 +205,15 @@ fn cooling_tower(parts: &mut Parts) {
     parts.sheet(1, sides, |u, v| point(0.0, v, 0.5 * (1.0 - u)));
 }
 
-/// Two to four pipes side by side across a bay, each with a swing or a flange on its way.
+/// Two pipes side by side across a bay, each with a swing or a flange on its way.
 fn run(parts: &mut Parts, random: &mut Random) {
-    let pipes = 2 + random.below(3);
-    let mut aside = -0.25 * pipes as f32;
-    for _ in 0..pipes {
+    let mut aside = -0.5;
+    for _ in 0..2 {
         let radius = random.pick(&[0.06f32, 0.09, 0.14, 0.2]);
         aside += radius + 0.06;
         let (out, at) = (0.3 * random.range(-1.0, 1.0) as f32, random.range(0.2, 0.6) as f32 * LONG);
         let point = |x: f32, y: f32| Vec3::new(x, y, aside);
-        if random.chance(0.5) {
+        if random.chance(0.35) {
             parts.pipe(
                 &[
                     point(0.0, 0.0),
@@ -228,8 +227,8 @@ fn run(parts: &mut Parts, random: &mut Random) {
                 10,
             );
         } else {
-            parts.pipe(&[point(0.0, 0.0), point(LONG, 0.0)], radius, 12);
-            parts.rod(point(at, 0.0), point(at + 0.15, 0.0), 1.5 * radius, 12);
+            parts.pipe(&[point(0.0, 0.0), point(LONG, 0.0)], radius, 8);
+            parts.rod(point(at, 0.0), point(at + 0.15, 0.0), 1.5 * radius, 8);
         }
         aside += radius;
     }
@@ -247,24 +246,24 @@ fn risers(parts: &mut Parts, random: &mut Random) {
         let bend = random.range(1.5, 3.5) as f32;
         let turned = glam::Quat::from_rotation_y(0.35) * out;
         let corners = [out, out + Vec3::Y * bend, turned + Vec3::Y * bend, turned + Vec3::Y * HIGH];
-        parts.pipe(&corners, 0.09, 10);
+        parts.pipe(&corners, 0.09, 6);
     }
 }
 
 /// Pipes that turn at right angles through a bay, below its ceiling, about its middle.
 fn tangle(parts: &mut Parts, random: &mut Random) {
-    for _ in 0..3 {
+    for _ in 0..2 {
         let mut corner = Vec3::new(random.range(-2.2, 2.2) as f32, 0.0, random.range(-2.2, 2.2) as f32);
         let mut corners = vec![corner];
         corner.y = random.range(0.5, 3.4) as f32;
         corners.push(corner);
-        for turn in 0..2 + random.below(3) {
+        for turn in 0..2 + random.below(2) {
             let axis = [0, 2, 1][turn % 3];
             let (low, high) = if axis == 1 { (0.4, 3.6) } else { (-2.4, 2.4) };
             corner[axis] = random.range(low, high) as f32;
             corners.push(corner);
         }
-        parts.pipe(&corners, random.pick(&[0.05, 0.08, 0.11, 0.16]), 10);
+        parts.pipe(&corners, random.pick(&[0.05, 0.08, 0.11, 0.16]), 6);
     }
 }
 
@@ -276,19 +275,19 @@ fn pump(parts: &mut Parts) {
         parts.lathe(
             [0.0; 3],
             &[[0.0, -1.0], [0.35, -1.0], [0.4, -0.9], [0.4, -0.1], [0.15, 0.0], [0.15, 0.3], [0.0, 0.3]],
-            20,
+            12,
         );
         parts.lathe(
             [0.0, 0.3, 0.0],
             &[[0.0, 0.0], [0.3, 0.0], [0.55, 0.2], [0.55, 0.45], [0.3, 0.65], [0.0, 0.65]],
-            24,
+            12,
         );
-        for rib in 0..8 {
-            let y = -0.85 + 0.09 * rib as f32;
-            parts.lathe([0.0, y, 0.0], &[[0.38, 0.0], [0.46, 0.0], [0.46, 0.03], [0.38, 0.03]], 20);
+        for rib in 0..4 {
+            let y = -0.85 + 0.14 * rib as f32;
+            parts.lathe([0.0, y, 0.0], &[[0.38, 0.0], [0.46, 0.0], [0.46, 0.03], [0.38, 0.03]], 12);
         }
     });
-    parts.pipe(&[Vec3::new(-0.6, 0.8, 0.0), Vec3::new(-0.6, 1.8, 0.0), Vec3::new(-0.6, 1.8, -0.9)], 0.14, 12);
+    parts.pipe(&[Vec3::new(-0.6, 0.8, 0.0), Vec3::new(-0.6, 1.8, 0.0), Vec3::new(-0.6, 1.8, -0.9)], 0.14, 8);
 }
 
 /// A lying drum with domed ends on saddles.
@@ -300,9 +299,9 @@ fn exchanger(parts: &mut Parts) {
             (0..=4).map(|step| dome(step as f32 / 4.0)).map(|[r, y]| [r, -1.2 - y]).collect();
         profile.extend((0..=4).rev().map(|step| dome(step as f32 / 4.0)).map(|[r, y]| [r, 1.2 + y]));
         (profile[0][0], profile[9][0]) = (0.0, 0.0);
-        parts.lathe([0.0; 3], &profile, 24);
+        parts.lathe([0.0; 3], &profile, 14);
         for flange in [-1.2, -0.4, 0.4, 1.1] {
-            parts.lathe([0.0, flange, 0.0], &[[0.58, 0.0], [0.7, 0.0], [0.7, 0.1], [0.58, 0.1]], 24);
+            parts.lathe([0.0, flange, 0.0], &[[0.58, 0.0], [0.7, 0.0], [0.7, 0.1], [0.58, 0.1]], 14);
         }
     });
     for x in [-0.8, 0.6] {
@@ -312,15 +311,15 @@ fn exchanger(parts: &mut Parts) {
 
 /// A manifold with three hand wheels.
 fn valves(parts: &mut Parts) {
-    parts.pipe(&[Vec3::new(-1.2, 0.7, 0.0), Vec3::new(1.2, 0.7, 0.0)], 0.16, 14);
+    parts.pipe(&[Vec3::new(-1.2, 0.7, 0.0), Vec3::new(1.2, 0.7, 0.0)], 0.16, 8);
     for valve in -1..=1 {
         let x = 0.7 * valve as f32;
-        parts.globe([x, 0.7, 0.0], [0.26, 0.3, 0.26], [8, 14], |_| 1.0);
-        parts.rod([x, 0.0, 0.0], [x, 1.35, 0.0], 0.06, 8);
+        parts.globe([x, 0.7, 0.0], [0.26, 0.3, 0.26], [5, 8], |_| 1.0);
+        parts.rod([x, 0.0, 0.0], [x, 1.35, 0.0], 0.06, 6);
         let wheel = move |u: f32| Vec3::new(x + 0.24 * (TAU * u).cos(), 1.3, -0.24 * (TAU * u).sin());
-        parts.tube(wheel, [18, 6], 0.03, true);
-        for spoke in 0..3 {
-            let angle = spoke as f32 * PI / 3.0;
+        parts.tube(wheel, [12, 5], 0.03, true);
+        for spoke in 0..2 {
+            let angle = spoke as f32 * FRAC_PI_2;
             let arm = Vec3::new(0.23 * angle.cos(), 0.0, 0.23 * angle.sin());
             let hub = Vec3::new(x, 1.3, 0.0);
             parts.rod(hub - arm, hub + arm, 0.02, 5);
@@ -333,8 +332,8 @@ fn cabinet(parts: &mut Parts) {
     parts.cuboid([-0.9, 0.0, -0.35], [0.9, 2.0, 0.35]);
     for door in [-0.86, 0.02] {
         parts.cuboid([door, 0.1, 0.33], [door + 0.84, 1.93, 0.38]);
-        for slat in 0..10 {
-            let y = 0.3 + 0.08 * slat as f32;
+        for slat in 0..5 {
+            let y = 0.3 + 0.16 * slat as f32;
             parts.cuboid([door + 0.1, y, 0.36], [door + 0.74, y + 0.03, 0.41]);
         }
     }

@@ -18,7 +18,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const OBJECTS: usize = 8_868;
 const LEAST_OBJECTS: usize = 150;
 /// About how many objects a bay has.
-const OBJECTS_A_BAY: f64 = 9.1;
+const OBJECTS_A_BAY: f64 = 8.4;
 /// A bay of the frame, in metres; the meshes are made for it.
 pub(super) const BAY: DVec3 = DVec3::new(6.0, 5.0, 6.0);
 const EYE: f64 = 1.7;
@@ -97,7 +97,7 @@ impl Builder {
     }
 
     fn ground(&mut self) {
-        let size = self.size() + DVec3::new(220.0, 0.0, 220.0);
+        let size = self.size() + DVec3::new(150.0, 0.0, 130.0);
         let slab = DVec3::new(size.x, 0.6, size.z);
         self.assembly.place(self.meshes.slab, [0.34, 0.34, 0.32], sized(DVec3::new(0.0, -0.7, 0.0), slab));
     }
@@ -110,7 +110,7 @@ impl Builder {
             let at = DVec3::new(2.0 * x * half.x, -0.2, -half.z - 14.0);
             let size = DVec3::new(1.0, tall * (1.0 - 0.08 * index as f64), 1.0);
             self.assembly.place(self.meshes.chimney, [0.6, 0.56, 0.52], posed(at, 0.3, size));
-            let tower = DVec3::new(x.signum() * (half.x + 45.0), -0.2, -half.z - 20.0 - 9.0 * index as f64);
+            let tower = DVec3::new(x.signum() * (half.x + 30.0), -0.2, -half.z - 20.0 - 9.0 * index as f64);
             self.assembly.place(self.meshes.cooling_tower, [0.66, 0.65, 0.62], turned(tower, x));
         }
     }
@@ -139,7 +139,8 @@ impl Builder {
         if !on_gangway {
             self.machines(at);
         }
-        if z + 1 == self.bays[2] || x == 0 {
+        // The ends of the gangway stay open.
+        if z + 1 == self.bays[2] || (x == 0 && !on_gangway) {
             self.cladding(at, x == 0);
         }
     }
@@ -159,10 +160,10 @@ impl Builder {
 
     /// Pipes and trays under the next floor, above the head.
     fn overhead(&mut self, at: DVec3) {
-        for lane in 0..2 {
+        for lane in 0..1 + self.random.below(2) {
             let mesh = self.random.pick(&self.meshes.runs);
             let along_x = self.random.chance(0.5);
-            let height = BAY.y - 0.75 - 0.45 * f64::from(lane) - 0.2 * self.random.unit();
+            let height = BAY.y - 0.75 - 0.45 * lane as f64 - 0.2 * self.random.unit();
             let place = self.across(at, along_x, height);
             self.painted(mesh, place);
         }
@@ -190,7 +191,7 @@ impl Builder {
 
     fn machines(&mut self, at: DVec3) {
         for (x, z) in [(1.6, 1.7), (4.3, 4.2)] {
-            if self.random.chance(0.25) {
+            if self.random.chance(0.4) {
                 continue;
             }
             let mesh = self.random.pick(&self.meshes.machines);
@@ -222,10 +223,10 @@ impl Builder {
         let out = DVec3::new(angle.cos(), 0.0, angle.sin());
         let edge = (half.x / out.x.abs().max(1e-9)).min(half.z / out.z.abs().max(1e-9));
         let at = out * (edge * 1.05 + self.random.range(8.0, 40.0)) - DVec3::Y * 0.02;
-        let mesh = match self.random.below(4) {
+        let mesh = match self.random.below(8) {
             0 => self.meshes.tank,
-            1 => self.random.pick(&self.meshes.machines),
-            2 => self.random.pick(&self.meshes.tangles),
+            1 | 2 => self.random.pick(&self.meshes.machines),
+            3..=5 => self.random.pick(&self.meshes.tangles),
             _ => self.random.pick(&self.meshes.risers),
         };
         let turn = self.random.range(0.0, TAU);
