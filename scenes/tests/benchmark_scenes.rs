@@ -5,7 +5,7 @@ mod places;
 mod support;
 
 use glam::DVec3;
-use places::{may_be_in_view, InsideTest};
+use places::{farthest_motion_px, may_be_in_view, InsideTest};
 use scenes::procedural::{Entry, MOST_DETAIL, SCENES};
 use scenes::{open, CameraPath, Scene, SceneOptions, Shot, WorldBounds};
 use std::collections::HashSet;
@@ -46,6 +46,14 @@ fn each_has_the_objects_that_its_paper_says() {
             let expected = (objects as f64 * scale).round() as usize;
             assert_eq!(make(name, scale, 0).objects.len(), expected, "{name} at {scale}");
         }
+    }
+}
+
+#[test]
+fn the_way_leaves_room_for_all_balloons_of_small_swarms() {
+    for scale in [0.0007_f64, 0.001, 0.003, 0.01, 0.03, 0.1] {
+        let expected = (35_000.0 * scale).round() as usize;
+        assert_eq!(make("balloons", scale, 0).objects.len(), expected.max(24), "at {scale}");
     }
 }
 
@@ -210,6 +218,22 @@ fn scenes_are_as_open_as_their_papers_say() {
         let scene = make(name, scale, 0);
         let (seen, in_view) = seen_of_those_in_view(&scene, &path(&scene, "closing-in").sample(0, 3));
         assert!(seen as f64 > least * in_view as f64, "{name}: {seen} of {in_view}");
+    }
+}
+
+/// "The averages of maximal per-frame motion in the scenes are 16, 35, 26, and 29 pixels/frame for YR, MO, BL, and CB" (Lee et
+/// al. 2018, 4.1).
+#[test]
+fn walks_move_the_picture_as_fast_as_the_papers_do() {
+    for (name, scale, published) in [("yeahrights", 1.0, 16.0), ("monsters", 1.0, 35.0), ("balloons", 0.3, 26.0)] {
+        let scene = make(name, scale, 0);
+        let walk = CameraPath::named(&scene, Some("walk"), 1.0).expect("a walk");
+        let frames = (1..24).map(|sample| 40 * sample);
+        let motion: Vec<f64> = frames
+            .map(|frame| farthest_motion_px(&scene, &walk.sample(frame - 1, 960), &walk.sample(frame, 960)))
+            .collect();
+        let mean = motion.iter().sum::<f64>() / motion.len() as f64;
+        assert!((0.75..1.33).contains(&(mean / published)), "{name}: {mean} px a frame, not {published}");
     }
 }
 

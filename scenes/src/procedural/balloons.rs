@@ -2,7 +2,7 @@
 //! dynamic with 2,900 balloons) and in Lee et al. 2018, 4.1 (about 35,000 objects).
 //!
 //! A balloon and its basket are two objects. Balloons hide most of those behind them, and tiny baskets show through the gaps
-//! over the whole depth of the swarm: many layers, few large occluders, no ground. Kim's dynamic scene has 5,800 objects:
+//! over the whole depth of the swarm. A line through all of it meets some eight balloons; there is no ground. Kim's dynamic scene has 5,800 objects:
 //! `moving-balloons` at scale 0.166.
 
 use super::detail::Detail;
@@ -19,16 +19,16 @@ use std::f64::consts::TAU;
 const OBJECTS: usize = 35_000;
 const LEAST_OBJECTS: usize = 24;
 /// Room that each balloon has to itself, in metres, whatever its motion.
-const CELL: DVec3 = DVec3::new(26.0, 30.0, 26.0);
+const CELL: DVec3 = DVec3::new(23.0, 25.0, 23.0);
 /// Farthest from the middle of a balloon with its basket to its surface, in metres.
-const REACH: f64 = 12.0;
+const REACH: f64 = 10.0;
 /// Farthest from its cell's middle, at rest and by motion.
-const JITTER: DVec3 = DVec3::new(4.0, 2.0, 4.0);
+const JITTER: DVec3 = DVec3::new(2.8, 1.2, 2.8);
 const DRIFT: f64 = 1.0;
 /// How far the walk goes at speed 1, in metres.
-const WALK: f64 = 230.0;
+const WALK: f64 = 390.0;
 /// From the way to the nearest balloon.
-const CLEARANCE: f64 = 3.0;
+const CLEARANCE: f64 = 2.0;
 
 const CLOTHS: [[f32; 3]; 9] = [
     [0.75, 0.1, 0.1],
@@ -119,16 +119,16 @@ struct Swarm {
 
 impl Swarm {
     fn of(balloons: usize) -> Self {
-        // A third of the cells stay empty, and some more for the way.
-        let cells = 1.5 * balloons as f64 + 12.0;
+        // A sixth of the cells stay empty, and some more for the way.
+        let cells = 1.2 * balloons as f64 + 20.0;
         let layers = ((cells / 12.0).cbrt().round() as usize).max(2);
         Swarm { layers, side: (cells / layers as f64).sqrt().ceil() as usize + 1 }
     }
 
-    /// Straight through from a little within one side, aslant to the rows.
+    /// Straight from a little within one side, aslant to the rows, until there are still balloons ahead.
     fn way(&self) -> Vec<DVec3> {
         let half = 0.5 * self.side as f64 * CELL.z;
-        vec![DVec3::new(-0.1 * half, 0.0, 0.75 * half), DVec3::new(0.2 * half, 4.0, -half)]
+        vec![DVec3::new(-0.1 * half, 0.0, 0.75 * half), DVec3::new(0.1 * half, 4.0, -0.3 * half)]
     }
 
     /// Middles of balloons that leave the way free.

@@ -74,7 +74,7 @@ pub const SCENES: &[Entry] = &[
     Entry {
         name: "balloons",
         alias: "bl",
-        about: "balloons with tiny baskets in the air, behind one another in hundreds: 35,000 objects",
+        about: "balloons with tiny baskets in the air, many behind one another: 35,000 objects",
         by_detail: true,
         make: balloons::make_still,
     },

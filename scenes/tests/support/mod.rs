@@ -11,7 +11,8 @@ pub struct ItemBuffer {
     pub width: usize,
     pub height: usize,
     pub items: Vec<u32>,
-    depths: Vec<f64>,
+    /// Depth in clip space, near 1 and far 0; 0 where nothing is.
+    pub depths: Vec<f64>,
 }
 
 impl ItemBuffer {

@@ -1,7 +1,7 @@
 //! Where things are: whether a place is within an object's solid, and whether a box may be in view.
 
-use crate::support::{clip_from_world, outside};
-use glam::{DAffine3, DVec3};
+use crate::support::{clip_from_world, outside, ItemBuffer};
+use glam::{DAffine3, DVec2, DVec3, DVec4};
 use scenes::{Aabb, Scene, Shot, WorldBounds};
 
 /// The boxes of all objects: most of them do not hold a place, and need no closer look.
@@ -55,4 +55,22 @@ pub fn may_be_in_view(bounds: &Aabb, shot: &Shot, aspect: f64) -> bool {
         clip_from_world * DVec3::new(pick(0), pick(1), pick(2)).extend(1.0)
     };
     !outside(&[0, 1, 2, 3, 4, 5, 6, 7].map(corner))
+}
+
+/// The farthest way, in pixels of 1920x1080, that a point seen in a frame has gone since the frame before, if only the camera
+/// moves.
+pub fn farthest_motion_px(scene: &Scene, before: &Shot, now: &Shot) -> f64 {
+    const SIZE: DVec2 = DVec2::new(1920.0, 1080.0);
+    let aspect = SIZE.x / SIZE.y;
+    let picture = ItemBuffer::draw(scene, now, 160, 90);
+    let clip = |shot: &Shot| clip_from_world(&shot.pose, &shot.projection, aspect);
+    let before_from_now = clip(before) * clip(now).inverse();
+    let motion = |pixel: usize| {
+        let at = DVec2::new((pixel % 160) as f64 + 0.5, (pixel / 160) as f64 + 0.5) / DVec2::new(160.0, 90.0);
+        let at = 2.0 * at - DVec2::ONE;
+        let was = before_from_now * DVec4::new(at.x, at.y, picture.depths[pixel], 1.0);
+        (at - was.truncate().truncate() / was.w) * 0.5 * SIZE
+    };
+    let seen = (0..picture.depths.len()).filter(|&pixel| picture.depths[pixel] > 0.0);
+    seen.map(|pixel| motion(pixel).length()).fold(0.0, f64::max)
 }
