@@ -131,20 +131,25 @@ impl Swarm {
         vec![DVec3::new(-0.1 * half, 0.0, 0.75 * half), DVec3::new(0.1 * half, 4.0, -0.3 * half)]
     }
 
-    /// Middles of balloons that leave the way free.
+    /// Middles of balloons that leave the way and the approach to it free.
     fn free_cells(&self, way: &[DVec3], random: &mut Random) -> Vec<DVec3> {
         let mut free = Vec::new();
-        for layer in 0..self.layers {
-            // Rows of one layer do not stand above those of another.
-            let shift = DVec3::new(random.unit(), 0.0, random.unit());
-            for cell in 0..self.side * self.side {
-                let place = DVec3::new((cell % self.side) as f64, layer as f64, (cell / self.side) as f64) + shift;
-                let size = DVec3::new(self.side as f64, self.layers as f64 - 1.0, self.side as f64);
-                let mut part = || random.range(-1.0, 1.0);
-                let jitter = JITTER * DVec3::new(part(), part(), part());
-                let at = (place - 0.5 * size) * CELL + jitter;
-                if lane::distance(way, at) > REACH + 2.0 * DRIFT + CLEARANCE {
-                    free.push(at);
+        let approach = lane::approach(way, self.side as f64 * CELL.x);
+        let middle = 0.5 * DVec3::new(self.side as f64, self.layers as f64, self.side as f64);
+        for row in 0..self.side {
+            // Rows do not stand behind one another, nor columns of a row beside one another: no gap goes through the swarm.
+            let aside = random.unit();
+            for column in 0..self.side {
+                let up = random.unit();
+                for layer in 0..self.layers {
+                    let place = DVec3::new(column as f64 + aside, layer as f64 + up, row as f64 + 0.5);
+                    let mut part = || random.range(-1.0, 1.0);
+                    let jitter = JITTER * DVec3::new(part(), part(), part());
+                    let at = (place - middle) * CELL + jitter;
+                    let away = lane::distance(way, at).min(lane::distance(&approach, at));
+                    if away > REACH + 2.0 * DRIFT + CLEARANCE {
+                        free.push(at);
+                    }
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Keeping ways free: how far places are from a way of straight pieces.
 
+use crate::path::back_and_up;
 use glam::DVec3;
 
 /// Distance in metres of a place from the nearest point of a way of two points or more.
@@ -17,6 +18,11 @@ pub(super) fn level_distance(way: &[DVec3], at: DVec3) -> f64 {
     let flat = |point: &DVec3| DVec3::new(point.x, 0.0, point.z);
     let way: Vec<DVec3> = way.iter().map(flat).collect();
     distance(&way, flat(&at))
+}
+
+/// The straight line by which the path `closing-in` comes to a camera at the start of a way, from so many metres away.
+pub(super) fn approach(way: &[DVec3], metres: f64) -> [DVec3; 2] {
+    [way[0], way[0] + back_and_up(way[1] - way[0]) * metres]
 }
 
 /// A closed ring of a radius about a vertical axis, counter-clockwise from above, starting at an angle in radians. Each point's

@@ -55,11 +55,12 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let start = random.range(0.0, TAU);
     let way = lane::ring(DVec3::ZERO, 0.45 * radius, start, |at| 0.15 * FLATNESS * at.x);
     assembly.scene.objects.reserve(target + 8);
+    let approach = lane::approach(&way, 2.0 * radius);
     curtain(&mut assembly, &meshes, &mut random, &way);
     while assembly.len() < target {
         let size = size(&mut random);
         let at = place(&mut random, radius);
-        let away = lane::distance(&way, at);
+        let away = lane::distance(&way, at).min(lane::distance(&approach, at));
         if random.below(STONES_A_SATELLITE) == 0 {
             if away > 9.0 + CLEARANCE {
                 satellite(&mut assembly, &meshes, &mut random, at);
