@@ -173,13 +173,13 @@ fn envelope(parts: &mut Parts, radius: f32, slender: f32) {
         let [around, y] = outline(u);
         let around = if u == 0.0 { 0.0 } else { around };
         let angle = f64::from(if v == 1.0 { 0.0 } else { v }) * TAU;
-        // Between its ropes the cloth bulges.
-        let bulge = 1.0 + 0.03 * (gores * angle).sin().abs() as f32;
+        // Between its ropes the cloth bulges, but not at its mouth, where the skirt is sewn on.
+        let bulge = 1.0 + 0.03 * (1.0 - u) * (gores * angle).sin().abs() as f32;
         glam::Vec3::new(angle.cos() as f32 * around * bulge, 2.0 + y, -angle.sin() as f32 * around * bulge)
     });
     // The skirt, its mouth closed from within.
     let [mouth, y] = outline(1.0);
-    parts.lathe([0.0, 2.0 + y, 0.0], &[[0.0, 0.3], [0.8 * mouth, -0.9], [mouth, 0.02]], sides);
+    parts.lathe([0.0, 2.0 + y, 0.0], &[[0.0, 0.3], [0.8 * mouth, -0.9], [mouth, 0.0]], sides);
 }
 
 /// A basket on four ropes, some 10 m below the middle of the cloth.

@@ -7,7 +7,7 @@
 
 use super::detail::Detail;
 use super::random::Random;
-use super::{camera, count, lane, posed, shade, Assembly, SceneOptions};
+use super::{camera, count, posed, shade, Assembly, SceneOptions};
 use crate::model::{Scene, Walk};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -23,7 +23,7 @@ const LOT: [f64; 2] = [30.0, 34.0];
 const ROAD: f64 = 12.0;
 const SPOKES: usize = 12;
 /// Radius of the innermost ring's lots.
-const INNERMOST: f64 = 60.0;
+const INNERMOST: f64 = 90.0;
 const EYE: f64 = 1.7;
 /// How far the walk goes at speed 1, in metres.
 const WALK: f64 = 140.0;
@@ -83,14 +83,21 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         }
         ring += 1;
     }
-    let road = radius(rings / 3) + 0.5 * (LOT[1] + ROAD);
-    let start = (Random::new(options.seed, u64::MAX).below(SPOKES) as f64 + 0.3) * TAU / SPOKES as f64;
-    let walk = Walk { points: lane::ring(DVec3::ZERO, road, start, |_| EYE), length: WALK, clearance: 1.2 };
+    let spoke = Random::new(options.seed, u64::MAX).below(SPOKES);
+    let walk = Walk { points: spoke_walk(spoke, edge), length: WALK, clearance: 1.2 };
     let mut scene = builder.assembly.scene;
     scene.objects.truncate(target);
-    scene.cameras = vec![camera("ring road", &walk, 0.1, 4.0 * edge + 600.0)];
+    scene.cameras = vec![camera("spoke", &walk, 0.1, 4.0 * edge + 600.0)];
     scene.walk = Some(walk);
     scene
+}
+
+/// Along the middle of a spoke, towards the centre. A spoke is straight: who comes from afar comes down along it and through no
+/// tower.
+fn spoke_walk(spoke: usize, edge: f64) -> Vec<DVec3> {
+    let angle = spoke as f64 * TAU / SPOKES as f64;
+    let at = |out: f64| DVec3::new(out * angle.cos(), EYE, -out * angle.sin());
+    vec![at(0.7 * edge), at(0.5 * INNERMOST)]
 }
 
 /// Radius of the middles of a ring's lots.

@@ -20,7 +20,7 @@ const LEAST_OBJECTS: usize = 8;
 const PITCH: f64 = 2.7;
 const EYE: f64 = 1.6;
 /// How far the walk goes at speed 1, in metres.
-const WALK: f64 = 16.0;
+const WALK: f64 = 19.0;
 /// Different tangles.
 const SHAPES: usize = 8;
 

@@ -5,26 +5,31 @@ use glam::{DAffine3, DVec2, DVec3, DVec4};
 use scenes::{Aabb, Scene, Shot, WorldBounds};
 
 /// The boxes of all objects: most of them do not hold a place, and need no closer look.
-pub struct InsideTest {
-    boxes: Vec<Aabb>,
+pub struct InsideTest<'a> {
+    scene: &'a Scene,
+    bounds: WorldBounds,
+    still: Vec<(usize, Aabb)>,
 }
 
-impl InsideTest {
-    pub fn new(scene: &Scene) -> Self {
+impl<'a> InsideTest<'a> {
+    pub fn new(scene: &'a Scene) -> Self {
         let bounds = WorldBounds::new(scene);
         let of = |object: &scenes::Object| bounds.of(object.mesh, &object.world_from_object);
-        InsideTest { boxes: scene.objects.iter().map(of).collect() }
+        let still = scene.objects.iter().enumerate().filter(|(_, object)| !object.dynamic);
+        let still = still.map(|(index, object)| (index, of(object))).collect();
+        InsideTest { scene, bounds, still }
     }
 
-    /// The first object that has the place within its solid at a time.
-    pub fn solid_around(&self, scene: &Scene, at: DVec3, seconds: f64) -> Option<usize> {
+    /// An object that has the place within its solid at a time.
+    pub fn solid_around(&self, at: DVec3, seconds: f64) -> Option<usize> {
+        let objects = &self.scene.objects;
         let mut moved = Vec::new();
-        scene.motion.transforms_at(seconds, &mut moved);
+        self.scene.motion.transforms_at(seconds, &mut moved);
         let moving = moved.iter().map(|(object, place)| (*object as usize, *place));
-        let still = (0..scene.objects.len())
-            .filter(|&object| !scene.objects[object].dynamic && self.boxes[object].contains(at))
-            .map(|object| (object, scene.objects[object].world_from_object));
-        moving.chain(still).find(|(object, place)| is_inside(scene, *object, place, at)).map(|(object, _)| object)
+        let moving = moving.filter(|(object, place)| self.bounds.of(objects[*object].mesh, place).contains(at));
+        let still = self.still.iter().filter(|(_, bounds)| bounds.contains(at));
+        let still = still.map(|(object, _)| (*object, objects[*object].world_from_object));
+        moving.chain(still).find(|(object, place)| is_inside(self.scene, *object, place, at)).map(|(object, _)| object)
     }
 }
 

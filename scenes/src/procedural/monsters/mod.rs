@@ -23,7 +23,7 @@ const LEAST_OBJECTS: usize = 60;
 const ROOM: f64 = 36.0;
 const EYE: f64 = 1.9;
 /// How far the walk goes at speed 1, in metres.
-const WALK: f64 = 80.0;
+const WALK: f64 = 70.0;
 /// Sides of what is round, at level of detail 1.
 const FINE: usize = 6;
 
