@@ -2,14 +2,14 @@
 
 use crate::error::SceneError;
 use crate::model::Scene;
-use crate::procedural::{SceneOptions, SCENES};
+use crate::procedural::{SceneOptions, MOST_DETAIL, SCENES};
 use std::path::Path;
 
 /// Opens a procedural scene by name or alias, or a .glb or .gltf file. A name goes before a file of the same name.
 /// The scene has passed [`Scene::check`], and wrong declared bounds are repaired with a warning.
 ///
 /// # Errors
-/// An unknown name, a scale that is not above 0 and finite, a file that cannot be read or is not a good scene.
+/// An unknown name, a scale that is not above 0 and finite, a detail level above [`MOST_DETAIL`], a file that cannot be read or is not a good scene.
 pub fn open(name_or_file: &str, options: &SceneOptions) -> Result<Scene, SceneError> {
     let entry = SCENES
         .iter()
@@ -17,6 +17,7 @@ pub fn open(name_or_file: &str, options: &SceneOptions) -> Result<Scene, SceneEr
     let mut scene = match entry {
         Some(entry) => {
             check_scale(options.scale)?;
+            check_detail(options.detail)?;
             (entry.make)(options)
         }
         None => open_file(name_or_file)?,
@@ -32,6 +33,14 @@ fn check_scale(scale: f64) -> Result<(), SceneError> {
     }
     let choices = "any number above 0; 1 is the scene's standard size".into();
     Err(SceneError::Unknown { kind: "scene scale", name: scale.to_string(), choices })
+}
+
+fn check_detail(detail: u32) -> Result<(), SceneError> {
+    if detail <= MOST_DETAIL {
+        return Ok(());
+    }
+    let choices = (0..=MOST_DETAIL).map(|level| level.to_string()).collect::<Vec<_>>().join(", ");
+    Err(SceneError::Unknown { kind: "detail level", name: detail.to_string(), choices })
 }
 
 fn open_file(name_or_file: &str) -> Result<Scene, SceneError> {

@@ -9,6 +9,7 @@ mod viewpoint;
 mod way;
 
 pub use recorded::record;
+pub(crate) use viewpoint::back_and_up;
 
 use crate::animation::Motion;
 use crate::bounds::WorldBounds;

@@ -5,7 +5,7 @@ use scenes::{export_glb, import_bytes, open, CameraPath, Mesh, Motion, Projectio
 use std::path::Path;
 
 fn make(name: &str, scale: f64) -> Scene {
-    open(name, &SceneOptions { scale, seed: 4 }).expect("a procedural scene opens")
+    open(name, &SceneOptions { scale, seed: 4, ..Default::default() }).expect("a procedural scene opens")
 }
 
 fn read(file: &[u8]) -> Scene {

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 const FRAMES: usize = 61;
 
 fn scenes() -> Vec<Scene> {
-    let make = |name| open(name, &SceneOptions { scale: 0.05, seed: 1 }).expect("a procedural scene opens");
+    let make = |name| {
+        open(name, &SceneOptions { scale: 0.05, seed: 1, ..Default::default() }).expect("a procedural scene opens")
+    };
     let mut without_camera = make("boxes");
     without_camera.cameras.clear();
     let mut tower = without_camera.clone();

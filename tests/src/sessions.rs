@@ -8,7 +8,7 @@ use sightline::session::{Session, SessionOptions};
 use sightline::truth::RunTruth;
 
 /// Scene, scale and path of each run.
-pub const RUNS: [(&str, f64, &str); 11] = [
+pub const RUNS: [(&str, f64, &str); 13] = [
     ("city-block", 0.02, "walk"),
     ("city-block", 0.02, "rotate"),
     ("rooms", 0.1, "walk"),
@@ -20,6 +20,8 @@ pub const RUNS: [(&str, f64, &str); 11] = [
     ("moving-boxes", 1.0, "rotate"),
     ("moving-boxes", 1.0, "still"),
     ("moving-boxes", 1.0, "walk"),
+    ("moving-balloons", 0.02, "walk"),
+    ("factory", 0.02, "walk"),
 ];
 
 /// Opens one of the runs in a small size.

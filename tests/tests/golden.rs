@@ -71,7 +71,8 @@ fn hzb_keeps_its_frames() {
 }
 
 fn moving() -> worlds::Case {
-    let scene = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.1, seed: 1 }).unwrap();
+    let scene =
+        scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.1, seed: 1, ..Default::default() }).unwrap();
     worlds::Case { scene, ..worlds::walled(2) }
 }
 

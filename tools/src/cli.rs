@@ -10,6 +10,7 @@ use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use engine::{GpuOptions, TimerMode};
+use scenes::SceneOptions;
 use std::path::PathBuf;
 
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
@@ -85,6 +86,9 @@ pub struct SceneChoice {
     /// Seed of a procedural scene
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// How finely the meshes of the papers' scenes are divided, 0 to 4: each level has about four times the triangles
+    #[arg(long, value_name = "N", default_value_t = SceneOptions::default().detail)]
+    pub detail_level: u32,
     /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, or a recorded .json file
     #[arg(long, value_name = "NAME|FILE")]
     pub path: Option<String>,
@@ -258,6 +262,7 @@ impl SceneChoice {
             scene: scene.to_owned(),
             scale: self.scale,
             seed: self.seed,
+            detail: self.detail_level,
             path: self.path.clone(),
             speed: self.speed,
             whole_path: self.whole_path,
@@ -321,6 +326,16 @@ mod tests {
         for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
             assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
         }
+    }
+
+    #[test]
+    fn a_level_of_detail_reaches_the_session() {
+        let level = |line: &str| match Cli::parse_from(line.split(' ')).command {
+            Command::Shot(arguments) => arguments.scene.session().unwrap().detail,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(level("sightline shot"), SceneOptions::default().detail);
+        assert_eq!(level("sightline shot --scene powerplant --detail-level 3"), 3);
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub struct SessionOptions {
     pub scale: f64,
     /// Seed of a procedural scene.
     pub seed: u64,
+    /// How finely a procedural scene's meshes are divided.
+    pub detail: u32,
     /// Path name or .json file; none takes the scene's default.
     pub path: Option<String>,
     /// How many times the path's way the camera goes in a run.
@@ -34,6 +36,7 @@ impl Default for SessionOptions {
             scene: "city-block".to_owned(),
             scale: 1.0,
             seed: 1,
+            detail: SceneOptions::default().detail,
             path: None,
             speed: 1.0,
             whole_path: false,
@@ -65,7 +68,8 @@ impl Session {
 
     /// Opens a scene on a device.
     pub fn on(gpu: &Gpu, options: SessionOptions) -> Result<Self> {
-        let scene = scenes::open(&options.scene, &SceneOptions { scale: options.scale, seed: options.seed })?;
+        let SessionOptions { scale, seed, detail, .. } = options;
+        let scene = scenes::open(&options.scene, &SceneOptions { scale, seed, detail })?;
         Self::with_scene(gpu, scene, options)
     }
 

@@ -41,10 +41,7 @@ impl Viewpoint {
         match scene.cameras.get(camera) {
             Some(camera) => {
                 let forward = camera.pose.forward();
-                // Back and up, so that a camera in a street comes down along the street and not through houses.
-                let level = DVec3::new(forward.x, 0.0, forward.z).normalize_or(DVec3::NEG_Z);
-                let back = (DVec3::Y - level).normalize();
-                let start = camera.pose.position + back * (FAR_OUTSIDE * radius);
+                let start = camera.pose.position + back_and_up(forward) * (FAR_OUTSIDE * radius);
                 let clearance = scene.walk.as_ref().map_or(0.1 * radius, |walk| walk.clearance);
                 Viewpoint {
                     pose: camera.pose,
@@ -106,6 +103,13 @@ impl Viewpoint {
         };
         Shot { pose: Pose { position, rotation }, projection, seconds }
     }
+}
+
+/// Where `closing-in` comes from, as a unit direction from a camera that looks `forward`: back and up, so that a camera in a
+/// street comes down along the street and not through houses.
+pub(crate) fn back_and_up(forward: DVec3) -> DVec3 {
+    let level = DVec3::new(forward.x, 0.0, forward.z).normalize_or(DVec3::NEG_Z);
+    (DVec3::Y - level).normalize()
 }
 
 /// How far from the middle of a box a derived camera sees all of it in pictures of 4:3 and wider, looking against `direction`.

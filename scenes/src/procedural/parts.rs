@@ -1,5 +1,9 @@
 //! Meshes put together from simple parts, flat shaded, counter-clockwise from outside.
 
+mod cut;
+mod round;
+
+use super::detail::Detail;
 use crate::model::{Mesh, Topology};
 use glam::{Affine3A, Vec3};
 use std::f32::consts::TAU;
@@ -10,19 +14,33 @@ pub(super) struct Parts {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     indices: Vec<u32>,
+    detail: Detail,
 }
 
 impl Parts {
+    /// No parts yet; those to come are divided as a level of detail asks.
+    pub(super) fn at(detail: Detail) -> Self {
+        Parts { detail, ..Parts::default() }
+    }
+
+    /// The level that parts are divided by.
+    pub(super) fn detail(&self) -> Detail {
+        self.detail
+    }
+
     /// The finished mesh.
     pub(super) fn mesh(self, name: &str) -> Mesh {
-        let Parts { positions, normals, indices } = self;
+        let Parts { positions, normals, indices, .. } = self;
         Mesh { name: name.into(), topology: Topology::Triangles, positions, normals, indices, declared_bounds: None }
     }
 
     /// A flat face with its corners counter-clockwise from outside; three corners or more, convex.
     pub(super) fn face(&mut self, corners: &[Vec3]) {
-        let first = self.positions.len() as u32;
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Y);
+        if self.detail.cuts() > 1 {
+            return self.cut_face(corners, normal);
+        }
+        let first = self.positions.len() as u32;
         self.positions.extend_from_slice(corners);
         self.normals.extend(corners.iter().map(|_| normal));
         for corner in 2..corners.len() as u32 {
@@ -162,7 +180,21 @@ mod tests {
     #[test]
     fn parts_are_closed_and_look_outward() {
         type Build = fn(&mut Parts);
-        let cases: [(&str, Build, f32); 7] = [
+        let cases: [(&str, Build, f32); 12] = [
+            ("globe", |parts| parts.globe([0.0, 9.0, 0.0], [1.0; 3], [24, 48], |_| 1.0), 4.19),
+            ("lathe", |parts| parts.lathe([3.0, 0.0, 0.0], &[[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]], 64), TAU),
+            ("rod", |parts| parts.rod([0.0; 3], [3.0, 4.0, 0.0], 1.0, 64), 2.5 * TAU),
+            (
+                "ring",
+                |parts| {
+                    let around =
+                        |u: f32| Vec3::new((TAU * u).cos(), 0.2 * (2.0 * TAU * u).sin(), (TAU * u).sin()) * 4.0;
+                    parts.tube(around, [128, 32], 1.0, true);
+                },
+                0.5 * TAU * 26.1,
+            ),
+            // Both rods whole, and of the ball what lies outside of them, counted as often as parts hold it.
+            ("pipe", |parts| parts.pipe(&[Vec3::ZERO, Vec3::X * 9.0, Vec3::new(9.0, 9.0, 0.0)], 1.0, 32), 75.0),
             ("cuboid", |parts| parts.cuboid([-1.0, 0.0, -2.0], [1.0, 3.0, 2.0]), 24.0),
             ("tapered", |parts| parts.tapered([-1.0, 0.0, -1.0], [1.0, 3.0, 1.0], 1.0, 1.0), 4.0),
             ("cylinder", |parts| parts.cylinder([5.0, 1.0, 0.0], [1.0, 1.0], 2.0, 64), TAU),
@@ -176,12 +208,14 @@ mod tests {
             ),
         ];
         for (name, build, expected) in cases {
-            let mut parts = Parts::default();
-            build(&mut parts);
-            let mesh = parts.mesh(name);
-            assert!((volume(&mesh) - expected).abs() < 0.02 * expected, "{name}: {}", volume(&mesh));
-            assert!(is_closed(&mesh), "{name}");
-            assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-5), "{name}");
+            for level in [1, 2] {
+                let mut parts = Parts::at(Detail::new(level));
+                build(&mut parts);
+                let mesh = parts.mesh(name);
+                assert!((volume(&mesh) - expected).abs() < 0.02 * expected, "{name}: {}", volume(&mesh));
+                assert!(is_closed(&mesh), "{name} at level {level}");
+                assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-5), "{name}");
+            }
         }
     }
 }

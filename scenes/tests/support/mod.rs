@@ -11,7 +11,8 @@ pub struct ItemBuffer {
     pub width: usize,
     pub height: usize,
     pub items: Vec<u32>,
-    depths: Vec<f64>,
+    /// Depth in clip space, near 1 and far 0; 0 where nothing is.
+    pub depths: Vec<f64>,
 }
 
 impl ItemBuffer {
@@ -104,12 +105,13 @@ impl ItemBuffer {
     }
 }
 
-fn clip_from_world(pose: &Pose, projection: &Projection, aspect: f64) -> DMat4 {
+/// World to clip space for a picture of the given width over height.
+pub fn clip_from_world(pose: &Pose, projection: &Projection, aspect: f64) -> DMat4 {
     projection.clip_from_view(aspect) * DMat4::from_rotation_translation(pose.rotation, pose.position).inverse()
 }
 
 /// All corners are beyond one plane of the view volume.
-fn outside(corners: &[DVec4]) -> bool {
+pub fn outside(corners: &[DVec4]) -> bool {
     let planes: [fn(&DVec4) -> bool; 6] =
         [|c| c.x > c.w, |c| c.x < -c.w, |c| c.y > c.w, |c| c.y < -c.w, |c| c.z > c.w, |c| c.z < 0.0];
     planes.iter().any(|beyond| corners.iter().all(beyond))

@@ -212,7 +212,7 @@ pub fn creeping() -> Case {
 /// Half of the declared boxes hold the eye, others are inverted, empty, NaN, infinite or too small; nobody has repaired them.
 pub fn bad_bounds() -> Case {
     let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == "bad-bounds").unwrap();
-    let scene = (entry.make)(&scenes::SceneOptions { scale: 0.15, seed: 3 });
+    let scene = (entry.make)(&scenes::SceneOptions { scale: 0.15, seed: 3, ..Default::default() });
     assert!(scene.bounds_faults().len() > 10 && scene.meshes.iter().any(|mesh| mesh.honoured_bounds().is_some()));
     let eye = scene.cameras[0].pose.position;
     Case::new("bad bounds", scene, wander(eye, eye - 12.0 * DVec3::Z, PERSPECTIVE))

@@ -65,7 +65,8 @@ fn moving_equals_its_twin() {
 #[test]
 fn a_moved_world_has_the_bounds_of_one_made_there() {
     let gpu = gpu();
-    let scene = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.3, seed: 2 }).unwrap();
+    let scene =
+        scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.3, seed: 2, ..Default::default() }).unwrap();
     let mut world = World::new(&gpu, &scene).unwrap();
     for seconds in [0.0, 3.7, 1e4] {
         let mut there = scene.clone();

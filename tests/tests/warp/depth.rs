@@ -23,7 +23,8 @@ fn farthest(depth: &[f32], [width, height]: [u32; 2], reduction: u32) -> Vec<f32
 #[test]
 fn a_still_camera_warps_to_itself_exactly() {
     let gpu = gpu();
-    let moving = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.3, seed: 2 }).unwrap();
+    let moving =
+        scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.3, seed: 2, ..Default::default() }).unwrap();
     let shot_of_moving = Shot { seconds: 2.5, ..shot(OVER_BOXES, DVec3::ZERO, PERSPECTIVE) };
     let parallel = Projection::Orthographic { half_height: 3.5, near: -2.0, far: 30.0 };
     let eye = DVec3::new(0.7, 0.4, 7.0);

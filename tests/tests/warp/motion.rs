@@ -113,7 +113,8 @@ fn motion_a_million_metres_out_is_as_exact() {
 #[test]
 fn motion_of_moving_objects_is_theirs_and_the_cameras() {
     let gpu = gpu();
-    let scene = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.5, seed: 2 }).unwrap();
+    let scene =
+        scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.5, seed: 2, ..Default::default() }).unwrap();
     let at = |eye: DVec3, seconds: f64| Shot { seconds, ..shot(eye, DVec3::ZERO, PERSPECTIVE) };
     let first = at(OVER_BOXES, 1.0);
     for later in [0.0, 0.05, 0.4] {

@@ -116,7 +116,8 @@ fn every_stage_equals_its_twin_in_all_settings() {
 #[test]
 fn every_stage_equals_its_twin_where_objects_move() {
     let gpu = gpu();
-    let scene = scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.5, seed: 2 }).unwrap();
+    let scene =
+        scenes::open("moving-boxes", &scenes::SceneOptions { scale: 0.5, seed: 2, ..Default::default() }).unwrap();
     let at = |seconds: f64| Shot { seconds, ..shot(OVER_BOXES, DVec3::ZERO, PERSPECTIVE) };
     let [first, second] = [at(1.0), at(1.1)];
     let mut lab = Lab::new(&gpu, &Case::new("moving boxes", scene, vec![first, second]));

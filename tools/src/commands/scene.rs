@@ -26,7 +26,8 @@ fn list() -> Result<()> {
 }
 
 fn open(choice: &SceneChoice) -> Result<(Scene, CameraPath)> {
-    let scene = scenes::open(choice.one_scene()?, &SceneOptions { scale: choice.scale, seed: choice.seed })?;
+    let SceneChoice { scale, seed, detail_level: detail, .. } = *choice;
+    let scene = scenes::open(choice.one_scene()?, &SceneOptions { scale, seed, detail })?;
     let path = match choice.path.as_deref() {
         Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), choice.speed)?,
         name => CameraPath::named(&scene, name, choice.speed)?,
