@@ -20,16 +20,15 @@ pub(super) struct Hybrid {
 }
 
 /// The `most` objects of more than `triangles` triangles that have the most, by object; those that can move are among them.
-pub(super) fn candidates(world: &World, most: u32, triangles: u32) -> Result<Vec<u32>> {
-    let commands = world.read_all_commands()?;
+pub(super) fn candidates(world: &World, most: u32, triangles: u32) -> Vec<u32> {
     let of_triangles = world.ranges().iter().filter(|range| range.primitives == Primitives::Triangles);
     let objects = of_triangles.flat_map(|range| range.first..range.first + range.count);
-    let triangles_of = |object: &u32| commands[*object as usize].index_count / 3;
+    let triangles_of = |object: &u32| world.index_count(*object) / 3;
     let mut costly: Vec<u32> = objects.filter(|object| triangles_of(object) > triangles).collect();
     costly.sort_by_key(|object| std::cmp::Reverse(triangles_of(object)));
     costly.truncate(most as usize);
     costly.sort_unstable();
-    Ok(costly)
+    costly
 }
 
 impl Hybrid {

@@ -16,7 +16,7 @@ use crate::farthest::hom;
 use crate::pack::DrawList;
 use crate::warp::Settings;
 use crate::world::Still;
-use crate::{Method, Result, Setup, TestedBoxes, View, Work, World};
+use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hybrid::Hybrid;
 use map::{OcclusionMap, Recipe};
@@ -171,11 +171,8 @@ impl Woc {
         let fastest = setup.options.text(options::RAPID.name).parse().unwrap_or(0.0);
         let settings = Settings { fill: kind == Kind::Approximate, fastest, ..Settings::of(setup.options) };
         let [erode, close] = [options::ERODE, options::CLOSE].map(|option| setup.options.flag(option.name));
-        let costly = hybrid::candidates(
-            world,
-            setup.options.number(options::HYBRID.name),
-            setup.options.number(options::HYBRID_TRIANGLES.name),
-        )?;
+        let number = |option: OptionInfo| setup.options.number(option.name);
+        let costly = hybrid::candidates(world, number(options::HYBRID), number(options::HYBRID_TRIANGLES));
         let hybrid = if costly.is_empty() { None } else { Some(Hybrid::new(gpu, world, &costly)?) };
         let list = |name: &str| DrawList::styled(gpu, name, world, options::commands(setup.options));
         Ok(Woc {

@@ -54,6 +54,7 @@ struct Host {
     bounds: WorldBounds,
     boxes: Vec<scenes::Aabb>,
     object_meshes: Vec<u32>,
+    mesh_indices: Vec<u32>,
     static_objects: Vec<Object>,
     flags: Vec<u32>,
     transforms: Vec<(u32, DAffine3)>,
@@ -92,6 +93,7 @@ impl World {
                 bounds: flat.world_bounds,
                 boxes: flat.boxes,
                 object_meshes: flat.object_meshes,
+                mesh_indices: flat.meshes.iter().map(|mesh| mesh.index_count).collect(),
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
                 static_objects: if moving == 0 { Vec::new() } else { flat.objects },
                 transforms,
@@ -121,6 +123,11 @@ impl World {
     /// Triangles of all objects, instances counted apart.
     pub fn triangles(&self) -> u64 {
         self.host.triangles
+    }
+
+    /// Indices of an object's mesh: three a triangle, two a line, one a point.
+    pub fn index_count(&self, object: u32) -> u32 {
+        self.host.mesh_indices[self.host.object_meshes[object as usize] as usize]
     }
 
     /// The scene's object behind each of the world's, which differ where lines and points are mixed in.
