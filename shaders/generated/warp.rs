@@ -243,7 +243,8 @@ impl Default for ErodeDepthConstants {
 
 /// Where does each pixel of the last frame go, and how deep is it then? Its depth is reprojected through
 /// what the camera did and, where objects move, what the pixel's object did (TOG 2018, 3.1). At reduced size the farthest
-/// pixel of each block stands for it, so that what is warped hides no more than what was there.
+/// pixel of each block stands for it, so that what is warped hides no more than what was there; or its MIDDLE one, where
+/// warp/search_depth looks at all of them.
 /// Twin: culling/src/warp/twin.rs
 ///
 /// Accuracy: the host combines both views and both places of the object in f64 into one matrix M, rounded to f32 once. With
@@ -289,7 +290,11 @@ impl Stage for MeasureMotion {
             BindingInfo { name: "motions", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 84,
-        constants: &[ConstantInfo { name: "DYNAMIC", id: 0 }, ConstantInfo { name: "REDUCTION", id: 1 }],
+        constants: &[
+            ConstantInfo { name: "DYNAMIC", id: 0 },
+            ConstantInfo { name: "REDUCTION", id: 1 },
+            ConstantInfo { name: "MIDDLE", id: 2 },
+        ],
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -313,7 +318,7 @@ impl Stage for MeasureMotion {
                 self.motions.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.dynamic), self.constants.reduction],
+            vec![u32::from(self.constants.dynamic), self.constants.reduction, u32::from(self.constants.middle)],
         )
     }
 }
@@ -344,12 +349,14 @@ pub struct MeasureMotionConstants {
     pub dynamic: bool,
     /// Pixels of a texel's side.
     pub reduction: u32,
+    /// `MIDDLE` in GLSL.
+    pub middle: bool,
 }
 
 impl Default for MeasureMotionConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { dynamic: false, reduction: 1 }
+        Self { dynamic: false, reduction: 1, middle: false }
     }
 }
 
@@ -413,6 +420,10 @@ const _: () = {
 /// 5.3). Where a search ends in the background there may be background.
 /// Twin: culling/src/warp/twin.rs
 ///
+/// FOOTPRINT erodes by what was really there (ours; for Kim 2015, IV.1): what is found gets the farthest depth of the pixels that
+/// the texel's square covers where it came from, and of MARGIN pixels around them. The 3x3 texels of warp/erode_depth are 12x12
+/// pixels at a quarter of the size: safer, and they hide far less.
+///
 /// Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
 /// searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
 /// fixed point: the border is not smeared over what comes into view beside it.
@@ -426,10 +437,22 @@ pub struct SearchDepth {
     pub warped: BufferRef<f32>,
     /// `axes` in GLSL.
     pub axes: BufferRef<[f32; 2]>,
+    /// What FOOTPRINT reads, as warp/measure_motion does.
+    pub last_depth: BufferRef<f32>,
+    /// `items` in GLSL.
+    pub items: BufferRef<u32>,
+    /// `slots` in GLSL.
+    pub slots: BufferRef<u32>,
+    /// `reprojections` in GLSL.
+    pub reprojections: BufferRef<types::Reprojection>,
+    /// `camera` in GLSL.
+    pub camera: types::Reprojection,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
     /// `tiles` in GLSL.
     pub tiles: [u32; 2],
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
     /// Specialization constants.
     pub constants: SearchDepthConstants,
 }
@@ -446,8 +469,12 @@ impl Stage for SearchDepth {
             BindingInfo { name: "bounds", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "warped", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "axes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "last_depth", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "items", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "slots", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "reprojections", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
-        push_size: 16,
+        push_size: 88,
         constants: &[
             ConstantInfo { name: "SEEDS", id: 0 },
             ConstantInfo { name: "ITERATIONS", id: 1 },
@@ -456,6 +483,10 @@ impl Stage for SearchDepth {
             ConstantInfo { name: "NARROW", id: 4 },
             ConstantInfo { name: "FILL", id: 5 },
             ConstantInfo { name: "ORIENTED", id: 6 },
+            ConstantInfo { name: "FOOTPRINT", id: 7 },
+            ConstantInfo { name: "DYNAMIC", id: 8 },
+            ConstantInfo { name: "REDUCTION", id: 9 },
+            ConstantInfo { name: "MARGIN", id: 10 },
         ],
         local_size: [8, 8, 1],
         vertex: &[],
@@ -464,10 +495,20 @@ impl Stage for SearchDepth {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = SearchDepthPush { texels: self.texels, tiles: self.tiles };
+        let push =
+            SearchDepthPush { camera: self.camera, texels: self.texels, tiles: self.tiles, size_px: self.size_px };
         BoundStage::new(
             Self::INFO,
-            vec![self.motions.into(), self.bounds.into(), self.warped.into(), self.axes.into()],
+            vec![
+                self.motions.into(),
+                self.bounds.into(),
+                self.warped.into(),
+                self.axes.into(),
+                self.last_depth.into(),
+                self.items.into(),
+                self.slots.into(),
+                self.reprojections.into(),
+            ],
             bytemuck::bytes_of(&push),
             vec![
                 self.constants.seeds,
@@ -477,6 +518,10 @@ impl Stage for SearchDepth {
                 self.constants.narrow.to_bits(),
                 u32::from(self.constants.fill),
                 u32::from(self.constants.oriented),
+                u32::from(self.constants.footprint),
+                u32::from(self.constants.dynamic),
+                self.constants.reduction,
+                self.constants.margin,
             ],
         )
     }
@@ -487,14 +532,18 @@ impl ComputeStage for SearchDepth {}
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct SearchDepthPush {
+    camera: types::Reprojection,
     texels: [u32; 2],
     tiles: [u32; 2],
+    size_px: [u32; 2],
 }
 
 const _: () = {
-    assert!(std::mem::offset_of!(SearchDepthPush, texels) == 0);
-    assert!(std::mem::offset_of!(SearchDepthPush, tiles) == 8);
-    assert!(size_of::<SearchDepthPush>() == 16);
+    assert!(std::mem::offset_of!(SearchDepthPush, camera) == 0);
+    assert!(std::mem::offset_of!(SearchDepthPush, texels) == 64);
+    assert!(std::mem::offset_of!(SearchDepthPush, tiles) == 72);
+    assert!(std::mem::offset_of!(SearchDepthPush, size_px) == 80);
+    assert!(size_of::<SearchDepthPush>() == 88);
 };
 
 /// Specialization constants of [`SearchDepth`].
@@ -514,12 +563,32 @@ pub struct SearchDepthConstants {
     pub fill: bool,
     /// `ORIENTED` in GLSL.
     pub oriented: bool,
+    /// `FOOTPRINT` in GLSL.
+    pub footprint: bool,
+    /// Objects move: `items` is read.
+    pub dynamic: bool,
+    /// Pixels of a texel's side.
+    pub reduction: u32,
+    /// Pixels around a footprint that count too.
+    pub margin: u32,
 }
 
 impl Default for SearchDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { seeds: 4, iterations: 5, threshold: 0.5, tile: 4, narrow: 1.0, fill: false, oriented: false }
+        Self {
+            seeds: 4,
+            iterations: 5,
+            threshold: 0.5,
+            tile: 4,
+            narrow: 1.0,
+            fill: false,
+            oriented: false,
+            footprint: false,
+            dynamic: false,
+            reduction: 1,
+            margin: 0,
+        }
     }
 }
 

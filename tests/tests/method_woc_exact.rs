@@ -5,12 +5,13 @@ harness::skipping_method_tests!("woc-exact");
 
 /// Settings that hide too much, or take too little care: what they get wrong must be repaired.
 fn subjects() -> Vec<Subject> {
-    let sets: [&[(&str, &str)]; 6] = [
-        &[("erode", "false")],
-        &[("erode", "false"), ("close", "false"), ("size", "2")],
+    let sets: [&[(&str, &str)]; 7] = [
+        &[("erode", "none")],
+        &[("erode", "footprint"), ("margin", "0"), ("structure", "n-buffer"), ("rapid", "0")],
+        &[("erode", "none"), ("close", "false"), ("size", "2")],
         &[("size", "4")],
         &[("structure", "n-buffer"), ("seeds", "1"), ("iterations", "1")],
-        &[("structure", "mip"), ("erode", "false"), ("steps", "0")],
+        &[("structure", "mip"), ("erode", "none"), ("steps", "0")],
         &[("seeds", "16"), ("threshold", "0.125"), ("tile", "1")],
     ];
     let set = |options: &[(&str, &str)]| {
@@ -33,7 +34,7 @@ fn no_setting_misses_an_object() {
 #[test]
 fn any_size_is_exact() {
     let gpu = gpu();
-    for subject in [Subject::named("woc-exact"), Subject::named("woc-exact").with("size", "4").with("erode", "false")] {
+    for subject in [Subject::named("woc-exact"), Subject::named("woc-exact").with("size", "4").with("erode", "none")] {
         assert_none(&laws::any_size_is_exact(&gpu, &subject, &worlds::walled(100)));
     }
 }

@@ -100,7 +100,7 @@ fn woc_exact(seed: u64) -> Subject {
         ("steps", &["0", "3"]),
         ("tile", &["1", "4", "16"]),
         ("oriented", &["false", "true"]),
-        ("erode", &["false", "true"]),
+        ("erode", &["footprint", "neighbours", "none"]),
         ("close", &["false", "true"]),
         ("rapid", &["0", "0.005", "0.02", "0.08"]),
         ("hybrid-triangles", &["0", "5", "100000"]),

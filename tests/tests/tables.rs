@@ -62,7 +62,7 @@ fn a_method_differs_from_none_as_it_does_from_the_truth() {
     let methods = ["none", "frustum", "woc"].map(|id| culling::find(id).unwrap());
     let pair = |label: &str| ["none".to_owned(), label.to_owned()];
     let mut methods = methods.map(|entry| (entry, entry.default_options()));
-    for (option, value) in [("size", "1"), ("erode", "false"), ("rapid", "0"), ("seeds", "4")] {
+    for (option, value) in [("size", "1"), ("erode", "none"), ("rapid", "0"), ("seeds", "4")] {
         methods[2].1.set(option, value).unwrap();
     }
     let careless = methods[2].1.label();

@@ -10,7 +10,7 @@ mod settings;
 pub mod twin;
 
 pub use reprojection::{reprojections, LastFrame, Reprojections};
-pub use settings::{Settings, ITERATIONS, LOOKUPS, NARROW, OPTIONS, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
+pub use settings::{Settings, ITERATIONS, LOOKUPS, MARGIN, NARROW, OPTIONS, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 
 use crate::{Result, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
@@ -124,15 +124,17 @@ impl Warp {
         let last = self.last.as_ref().expect("a frame was kept before the first is warped");
         let Reprojections { camera, moving } = reprojections(last, world, view);
         self.reprojections.write(&moving)?;
-        self.measure_motion(f, camera, !moving.is_empty()); // 1. where each pixel of the last frame goes
+        let dynamic = !moving.is_empty();
+        self.measure_motion(f, camera, dynamic); // 1. where each pixel of the last frame goes
         self.orient_axes(f); // 2. along which axes motion is bounded best
         self.bound_motion(f); // 3. the least and greatest motion of each region
         self.tighten_bounds(f); // 4. where each tile's source can be
-        self.search_depth(f, warped); // 5. what moves here, and the nearest of it
+        self.search_depth(f, warped, camera, dynamic); // 5. what moves here, and the nearest of it
         Ok(())
     }
 
     fn measure_motion(&self, f: &mut Frame, camera: Reprojection, dynamic: bool) {
+        let Settings { reduction, footprint, .. } = self.settings;
         let stage = warp::MeasureMotion {
             depth: self.depth.all(),
             items: self.items.all(),
@@ -143,7 +145,7 @@ impl Warp {
             size_px: self.size,
             texels: self.texels,
             fastest: self.settings.fastest,
-            constants: warp::MeasureMotionConstants { dynamic, reduction: self.settings.reduction },
+            constants: warp::MeasureMotionConstants { dynamic, reduction, middle: footprint },
         };
         f.dispatch_over(stage, self.texels);
     }
@@ -195,16 +197,36 @@ impl Warp {
         f.dispatch_over(stage, self.tiles);
     }
 
-    fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>) {
-        let Settings { seeds, iterations, threshold, tile, narrow, fill, oriented, .. } = self.settings;
+    fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>, camera: Reprojection, dynamic: bool) {
+        let Settings {
+            seeds, iterations, threshold, tile, narrow, fill, oriented, footprint, reduction, margin, ..
+        } = self.settings;
         let stage = warp::SearchDepth {
             motions: self.motions.all(),
             bounds: self.bounds.all(),
             axes: self.axes.all(),
             warped,
+            last_depth: self.depth.all(),
+            items: self.items.all(),
+            slots: self.slots.all(),
+            reprojections: self.reprojections.all(),
+            camera,
             texels: self.texels,
             tiles: self.tiles,
-            constants: warp::SearchDepthConstants { seeds, iterations, threshold, tile, narrow, fill, oriented },
+            size_px: self.size,
+            constants: warp::SearchDepthConstants {
+                seeds,
+                iterations,
+                threshold,
+                tile,
+                narrow,
+                fill,
+                oriented,
+                footprint,
+                dynamic,
+                reduction,
+                margin,
+            },
         };
         f.dispatch_over(stage, self.texels);
     }

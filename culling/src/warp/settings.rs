@@ -60,6 +60,22 @@ pub const LOOKUPS: OptionInfo = OptionInfo {
         "pyramid texels a bound may touch in each direction: 2 is the paper's, more is tighter (anisotropic) and slower",
 };
 
+/// Erosion by footprint.
+const FOOTPRINT: OptionInfo = OptionInfo {
+    name: "footprint",
+    default: "false",
+    values: "true|false",
+    help: "give what is found the farthest depth of all pixels that the texel covers where it came from",
+};
+
+/// Pixels around a footprint that count too.
+pub const MARGIN: OptionInfo = OptionInfo {
+    name: "margin",
+    default: "1",
+    values: "0..=4",
+    help: "pixels around a footprint that count too: fewer errors, less culled",
+};
+
 /// Filling of holes.
 const FILL: OptionInfo = OptionInfo {
     name: "fill",
@@ -68,9 +84,9 @@ const FILL: OptionInfo = OptionInfo {
     help: "fill holes from the extremes of the search bound (AWOC), instead of leaving them far",
 };
 
-/// Options of a warp on its own. Methods list those they have among their own, and fill holes or do not.
+/// Options of a warp on its own. Methods list those they have among their own, and say themselves how they erode and fill.
 pub const OPTIONS: &[OptionInfo] =
-    &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, ORIENTED, LOOKUPS, FILL];
+    &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, ORIENTED, LOOKUPS, FOOTPRINT, MARGIN, FILL];
 
 /// The same, read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,12 +111,17 @@ pub struct Settings {
     pub lookups: u32,
     /// What moves farther in the canonical view volume is left out, because it is drawn ahead; 0 leaves out nothing.
     pub fastest: f32,
+    /// What is found gets the farthest depth of all pixels that the texel covers where it came from; the texel's middle pixel
+    /// stands for it until then. Otherwise its farthest pixel does, and nothing around it counts.
+    pub footprint: bool,
+    /// Pixels around a footprint that count too.
+    pub margin: u32,
     /// Holes are filled from the extremes of the search bound: not conservative.
     pub fill: bool,
 }
 
 impl Settings {
-    /// Reads the options of a method that has [`OPTIONS`] among its own; without `fill`, holes stay far.
+    /// Reads the options of a method that has [`OPTIONS`] among its own; without `footprint` and `fill`, both are false.
     pub fn of(options: &Options) -> Self {
         let fraction = |name: &str| options.text(name).parse().unwrap_or(0.0);
         Settings {
@@ -114,6 +135,8 @@ impl Settings {
             oriented: options.flag(ORIENTED.name),
             lookups: options.number(LOOKUPS.name).max(2),
             fastest: 0.0,
+            footprint: options.flag(FOOTPRINT.name),
+            margin: options.number(MARGIN.name),
             fill: options.flag(FILL.name),
         }
     }

@@ -1,9 +1,13 @@
 //! The stages of depth warping in plain Rust: their definition. The axes of bounds are in [`axes`](super::axes).
 
+mod search;
+
+pub use search::{search_depth, Search};
+
 use super::axes::{turned_back, turned_to};
 use glam::{Mat4, UVec2, Vec2, Vec4};
 use shaders::types::{
-    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, DEPTH_HOLE, REDUCED_LEVELS, WARP_CRACK, WARP_REACH,
+    MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, DEPTH_HOLE, REDUCED_LEVELS, WARP_REACH,
 };
 
 /// A picture of `size`, row by row from the top.
@@ -26,22 +30,37 @@ const NOWHERE: TexelMotion = TexelMotion { offset: [0.0; 2], depth: DEPTH_FAR };
 /// Bound of nothing.
 pub const NO_MOTION: MotionBound = MotionBound { low: [3.0e38; 2], high: [-3.0e38; 2] };
 
-/// Where each texel goes. `reprojection` gives that of the pixel's object. Twin of `warp/measure_motion`.
-pub fn measure_motion<'a>(
-    depth: Grid<'_, f32>,
-    reduction: u32,
-    fastest: f32,
-    reprojection: impl Fn(usize) -> &'a Reprojection,
-) -> Vec<TexelMotion> {
+/// The last frame's depth by pixel, and where each pixel went.
+pub struct LastDepth<'a> {
+    /// By pixel.
+    pub depth: Grid<'a, f32>,
+    /// That of a pixel's object.
+    pub reprojection: &'a dyn Fn(usize) -> &'a Reprojection,
+    /// Pixels of a texel's side.
+    pub reduction: u32,
+    /// Pixels around a footprint that count too.
+    pub margin: u32,
+}
+
+impl LastDepth<'_> {
+    fn reprojection_at(&self, x: u32, y: u32) -> &Reprojection {
+        (self.reprojection)((y * self.depth.size[0] + x) as usize)
+    }
+}
+
+/// Where each texel goes: its farthest pixel, or its `middle` one. Twin of `warp/measure_motion`.
+pub fn measure_motion(last: &LastDepth<'_>, fastest: f32, middle: bool) -> Vec<TexelMotion> {
+    let LastDepth { depth, reduction, .. } = *last;
     let [width, height] = depth.size.map(|side| side.div_ceil(reduction));
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let middle_of = |first: u32, axis: usize| (first * reduction + reduction / 2).min(depth.size[axis] - 1);
     texels
         .map(|(x, y)| {
-            let (px, py) = farthest_pixel(&depth, reduction, x, y);
+            let (px, py) =
+                if middle { (middle_of(x, 0), middle_of(y, 1)) } else { farthest_pixel(&depth, reduction, x, y) };
             let here = depth.at(px, py);
             if here > DEPTH_FAR {
-                let reprojection = reprojection((py * depth.size[0] + px) as usize);
-                moved(reprojection, [px, py], depth.size, here, reduction, fastest)
+                moved(last.reprojection_at(px, py), [px, py], depth.size, here, reduction, fastest)
             } else {
                 NOWHERE
             }
@@ -251,102 +270,6 @@ pub fn tighten_bounds(how: &Tightening<'_>) -> Vec<MotionBound> {
             bound
         })
         .collect()
-}
-
-/// The motions and how they are searched.
-#[derive(Clone, Copy, Debug)]
-pub struct Search<'a> {
-    /// By texel.
-    pub motions: Grid<'a, TexelMotion>,
-    /// By tile.
-    pub bounds: &'a [MotionBound],
-    /// Seeds a texel.
-    pub seeds: u32,
-    /// Iterations a seed.
-    pub iterations: u32,
-    /// How close a source must come, in texels.
-    pub threshold: f32,
-    /// Texels of a tile's side.
-    pub tile: u32,
-    /// A bound no wider than this, in texels, is sampled once.
-    pub narrow: f32,
-    /// Holes get the nearest depth at the extremes of the bound.
-    pub fill: bool,
-    /// Along what the bounds lie.
-    pub axis: [f32; 2],
-}
-
-impl Search<'_> {
-    fn inside(&self, place: Vec2) -> Vec2 {
-        place.clamp(Vec2::splat(0.5), UVec2::from(self.motions.size).as_vec2() - 0.5)
-    }
-
-    fn motion_at(&self, place: Vec2) -> TexelMotion {
-        self.motions.at(place.x as u32, place.y as u32)
-    }
-
-    fn fixed_point_search(&self, p: Vec2, seed: Vec2) -> f32 {
-        let mut place = self.inside(p - seed);
-        let mut motion = self.motion_at(place);
-        let mut iteration = 1;
-        while motion.depth > DEPTH_FAR {
-            let source = p - Vec2::from(motion.offset);
-            let miss = place - source;
-            let distance_squared = miss.x * miss.x + miss.y * miss.y;
-            let spent = iteration >= self.iterations;
-            if distance_squared < self.threshold * self.threshold
-                || (spent && distance_squared < WARP_CRACK * WARP_CRACK)
-            {
-                return motion.depth;
-            }
-            if spent {
-                return DEPTH_HOLE;
-            }
-            place = self.inside(source);
-            motion = self.motion_at(place);
-            iteration += 1;
-        }
-        DEPTH_FAR
-    }
-
-    fn fill_hole(&self, p: Vec2, bound: &MotionBound) -> f32 {
-        let [low, high] = [bound.low, bound.high];
-        let extremes = [low, [low[0], high[1]], high, [high[0], low[1]]];
-        let depth = |parts: [f32; 2]| self.motion_at(self.inside(p - Vec2::from(turned_back(parts, self.axis)))).depth;
-        extremes.map(depth).into_iter().fold(0.0, f32::max)
-    }
-
-    fn warped_depth(&self, texel: UVec2) -> f32 {
-        let across = self.motions.size[0].div_ceil(self.tile);
-        let bound = &self.bounds[(texel.y / self.tile * across + texel.x / self.tile) as usize];
-        if !has_motion(bound) {
-            return DEPTH_FAR;
-        }
-        let p = texel.as_vec2() + 0.5;
-        let extent = Vec2::from(bound.high) - Vec2::from(bound.low);
-        let seeds = if extent.cmple(Vec2::splat(self.narrow)).all() { 1 } else { self.seeds };
-        let nearest = (0..seeds)
-            .map(|index| Vec2::from(bound.low) + extent * stratified(index, seeds))
-            .map(|parts| self.fixed_point_search(p, turned_back(parts.to_array(), self.axis).into()))
-            .fold(DEPTH_HOLE, f32::max);
-        if self.fill && nearest == DEPTH_HOLE {
-            self.fill_hole(p, bound)
-        } else {
-            nearest
-        }
-    }
-}
-
-/// Point `index` of `count` in the unit square. Twin of `stratified`.
-fn stratified(index: u32, count: u32) -> Vec2 {
-    let down = index.reverse_bits() as f32 / 4_294_967_296.0;
-    Vec2::new((index as f32 + 0.5) / count as f32, down + 0.5 / count as f32).min(Vec2::ONE)
-}
-
-/// The depth that the new view will have at each texel. Twin of `warp/search_depth`.
-pub fn search_depth(how: &Search<'_>) -> Vec<f32> {
-    let [width, height] = how.motions.size;
-    (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y))).map(|texel| how.warped_depth(texel)).collect()
 }
 
 /// What a warped depth is given by its neighbours: eroded, its holes closed, or both. Then `drawn`, by texel, counts where it

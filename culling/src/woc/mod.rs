@@ -169,8 +169,11 @@ impl Woc {
         let (gpu, world) = (setup.gpu, setup.world);
         let flags = |name: &str| Buffer::new(gpu, &format!("woc.{name}"), world.len(), Placement::Storage);
         let fastest = setup.options.text(options::RAPID.name).parse().unwrap_or(0.0);
-        let settings = Settings { fill: kind == Kind::Approximate, fastest, ..Settings::of(setup.options) };
-        let [erode, close] = [options::ERODE, options::CLOSE].map(|option| setup.options.flag(option.name));
+        let eroded_by = |what: &str| setup.options.text(options::ERODE.name) == what;
+        let (footprint, erode) = (eroded_by("footprint"), eroded_by("neighbours"));
+        let close = setup.options.flag(options::CLOSE.name);
+        let fill = kind == Kind::Approximate;
+        let settings = Settings { fill, fastest, footprint, ..Settings::of(setup.options) };
         let number = |option: OptionInfo| setup.options.number(option.name);
         let costly = hybrid::candidates(world, number(options::HYBRID), number(options::HYBRID_TRIANGLES));
         let hybrid = if costly.is_empty() { None } else { Some(Hybrid::new(gpu, world, &costly)?) };

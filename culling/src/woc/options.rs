@@ -2,7 +2,7 @@
 
 use crate::farthest::hom::{LEVELS_OPTION, SIZE_OPTION, STRUCTURE_OPTION};
 use crate::pack::Commands;
-use crate::warp::{ITERATIONS, LOOKUPS, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
+use crate::warp::{ITERATIONS, LOOKUPS, MARGIN, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 use crate::world::SKIP_OPTION;
 use crate::{OptionInfo, Options};
 
@@ -10,12 +10,13 @@ use crate::{OptionInfo, Options};
 /// fewer objects, as each texel stands for its farthest pixel (README).
 pub(super) const SIZE: OptionInfo = OptionInfo { default: "4", ..SIZE_OPTION };
 
-/// Erosion of the warped depth.
+/// Erosion of the warped depth. By neighbours, as the thesis does, which misses least; by the footprint less is drawn (README).
 pub(super) const ERODE: OptionInfo = OptionInfo {
     name: "erode",
-    default: "true",
-    values: "true|false",
-    help: "give each warped texel the farthest depth around it: fewer errors, less culled",
+    default: "neighbours",
+    values: "footprint|neighbours|none",
+    help:
+        "give each warped texel the farthest depth of the texels around it, or of the pixels it covered before (faster)",
 };
 
 /// Closing of holes.
@@ -73,6 +74,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     ORIENTED,
     LOOKUPS,
     ERODE,
+    MARGIN,
     CLOSE,
     RAPID,
     HYBRID,

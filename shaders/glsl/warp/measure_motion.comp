@@ -1,6 +1,7 @@
 // warp/measure_motion: where does each pixel of the last frame go, and how deep is it then? Its depth is reprojected through
 // what the camera did and, where objects move, what the pixel's object did (TOG 2018, 3.1). At reduced size the farthest
-// pixel of each block stands for it, so that what is warped hides no more than what was there.
+// pixel of each block stands for it, so that what is warped hides no more than what was there; or its MIDDLE one, where
+// warp/search_depth looks at all of them.
 // Twin: culling/src/warp/twin.rs
 //
 // Accuracy: the host combines both views and both places of the object in f64 into one matrix M, rounded to f32 once. With
@@ -16,6 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool DYNAMIC = false;
 // Pixels of a texel's side.
 layout(constant_id = 1) const uint REDUCTION = 1u;
+layout(constant_id = 2) const bool MIDDLE = false;
 
 layout(set = 0, binding = 0, scalar) readonly buffer Depth { float items[]; } depth;
 // By pixel: its object.
@@ -33,12 +35,12 @@ float depth_at(uvec2 pixel) {
     return depth.items[pixel.y * push.size_px.x + pixel.x];
 }
 
-// The first pixel of the block, in reading order, that is as far as any; `farthest` is its depth.
-uvec2 farthest_pixel(uvec2 texel, out float farthest) {
+// The pixel that stands for a block: the first, in reading order, that is as far as any. `farthest` is its depth.
+uvec2 pixel_for(uvec2 texel, out float farthest) {
     uvec2 first = texel * REDUCTION;
-    uvec2 found = first;
-    farthest = depth_at(first);
-    if (REDUCTION == 1u) return found;
+    uvec2 found = MIDDLE ? min(first + REDUCTION / 2u, push.size_px - 1u) : first;
+    farthest = depth_at(found);
+    if (REDUCTION == 1u || MIDDLE) return found;
     uvec2 end = min(first + REDUCTION, push.size_px);
     for (uint y = first.y; y < end.y; y++) {
         for (uint x = first.x; x < end.x; x++) {
@@ -76,6 +78,6 @@ void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(texel, push.texels))) return;
     float here;
-    uvec2 pixel = farthest_pixel(texel, here);
+    uvec2 pixel = pixel_for(texel, here);
     motions.items[texel.y * push.texels.x + texel.x] = here > DEPTH_FAR ? moved(pixel, here) : TexelMotion(vec2(0.0), DEPTH_FAR);
 }

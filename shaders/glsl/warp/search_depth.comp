@@ -5,6 +5,10 @@
 // 5.3). Where a search ends in the background there may be background.
 // Twin: culling/src/warp/twin.rs
 //
+// FOOTPRINT erodes by what was really there (ours; for Kim 2015, IV.1): what is found gets the farthest depth of the pixels that
+// the texel's square covers where it came from, and of MARGIN pixels around them. The 3x3 texels of warp/erode_depth are 12x12
+// pixels at a quarter of the size: safer, and they hide far less.
+//
 // Two departures. A search whose iterations are spent is given the tolerance of WARP_CRACK (motion.glsl says why). And
 // searches stay in the picture. A source outside it is then as far from the texel read as it is from the border, and no
 // fixed point: the border is not smeared over what comes into view beside it.
@@ -23,12 +27,24 @@ layout(constant_id = 3) const uint TILE = 4u;
 layout(constant_id = 4) const float NARROW = 1.0;
 layout(constant_id = 5) const bool FILL = false;
 layout(constant_id = 6) const bool ORIENTED = false;
+layout(constant_id = 7) const bool FOOTPRINT = false;
+// Objects move: `items` is read.
+layout(constant_id = 8) const bool DYNAMIC = false;
+// Pixels of a texel's side.
+layout(constant_id = 9) const uint REDUCTION = 1u;
+// Pixels around a footprint that count too.
+layout(constant_id = 10) const uint MARGIN = 0u;
 
 layout(set = 0, binding = 0, scalar) readonly buffer Motions { TexelMotion items[]; } motions;
 layout(set = 0, binding = 1, scalar) readonly buffer TileBounds { MotionBound items[]; } bounds;
 layout(set = 0, binding = 2, scalar) writeonly buffer Warped { float items[]; } warped;
 layout(set = 0, binding = 3, scalar) readonly buffer Axes { vec2 items[]; } axes;
-layout(push_constant, scalar) uniform Push { uvec2 texels; uvec2 tiles; } push;
+// What FOOTPRINT reads, as warp/measure_motion does.
+layout(set = 0, binding = 4, scalar) readonly buffer Depth { float items[]; } last_depth;
+layout(set = 0, binding = 5, scalar) readonly buffer Items { uint items[]; } items;
+layout(set = 0, binding = 6, scalar) readonly buffer Slots { uint items[]; } slots;
+layout(set = 0, binding = 7, scalar) readonly buffer Reprojections { Reprojection items[]; } reprojections;
+layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 texels; uvec2 tiles; uvec2 size_px; } push;
 
 vec2 inside(vec2 place) {
     return clamp(place, vec2(0.5), vec2(push.texels) - 0.5);
@@ -39,6 +55,42 @@ TexelMotion motion_at(vec2 place) {
     return motions.items[texel.y * push.texels.x + texel.x];
 }
 
+// The depth that a pixel of the last frame has in the new view; what has none there is far.
+float new_depth(uvec2 pixel, float here) {
+    mat4 m = push.camera.clip_from_last;
+    if (DYNAMIC) {
+        uint slot = slots.items[items.items[pixel.y * push.size_px.x + pixel.x]];
+        if (slot != 0u) m = reprojections.items[slot - 1u].clip_from_last;
+    }
+    precise vec2 place = (vec2(pixel) + 0.5) / vec2(push.size_px) * 2.0 - 1.0;
+    precise vec2 clip = vec2(m[0].z, m[0].w) * place.x + vec2(m[1].z, m[1].w) * place.y + vec2(m[2].z, m[2].w) * here
+        + vec2(m[3].z, m[3].w);
+    precise float depth = clip.x / clip.y;
+    return clip.y > 0.0 && depth > DEPTH_FAR && depth <= 1.0 ? depth : DEPTH_FAR;
+}
+
+// The new depth of the farthest of the pixels that a texel's square around `source` touches, or `found` if that is farther.
+float farthest_around(vec2 source, float found) {
+    if (!FOOTPRINT) return found;
+    precise vec2 low = (source - 0.5) * float(REDUCTION) - float(MARGIN);
+    precise vec2 high = (source + 0.5) * float(REDUCTION) + float(MARGIN);
+    ivec2 most = ivec2(push.size_px) - 1;
+    uvec2 first = uvec2(clamp(ivec2(floor(low)), ivec2(0), most));
+    uvec2 last = uvec2(clamp(ivec2(ceil(high)) - 1, ivec2(0), most));
+    uvec2 pixel = first;
+    float farthest = 1.0;
+    for (uint y = first.y; y <= last.y; y++) {
+        for (uint x = first.x; x <= last.x; x++) {
+            float here = last_depth.items[y * push.size_px.x + x];
+            if (here < farthest) {
+                farthest = here;
+                pixel = uvec2(x, y);
+            }
+        }
+    }
+    return farthest == DEPTH_FAR ? DEPTH_FAR : min(found, new_depth(pixel, farthest));
+}
+
 // Figure 3: the depth of what moves to p, searched from where the motion `seed` would come from.
 float fixed_point_search(vec2 p, vec2 seed) {
     vec2 place = inside(p - seed);
@@ -47,8 +99,9 @@ float fixed_point_search(vec2 p, vec2 seed) {
         vec2 source = p - motion.offset;
         precise vec2 miss = place - source;
         precise float distance_squared = miss.x * miss.x + miss.y * miss.y;
-        if (distance_squared < THRESHOLD * THRESHOLD) return motion.depth;
-        if (k >= ITERATIONS) return distance_squared < WARP_CRACK * WARP_CRACK ? motion.depth : DEPTH_HOLE;
+        float tolerance = k < ITERATIONS ? THRESHOLD : WARP_CRACK;
+        if (distance_squared < tolerance * tolerance) return farthest_around(source, motion.depth);
+        if (k >= ITERATIONS) return DEPTH_HOLE;
         place = inside(source);
         motion = motion_at(place);
     }

@@ -111,7 +111,7 @@ fn woc_of_its_parts_is_exact_before_a_still_camera() {
 fn woc_unrepaired_is_not_exact() {
     let gpu = gpu();
     let faults = |id: &str| -> Vec<String> {
-        let subject = Subject::named(id).with("size", "4").with("rapid", "0").with("erode", "false");
+        let subject = Subject::named(id).with("size", "4").with("rapid", "0").with("erode", "none");
         let cases = worlds::special().into_iter();
         cases.flat_map(|case| laws::no_visible_object_is_culled(&gpu, &subject, &case)).collect()
     };

@@ -2,7 +2,7 @@
 
 use super::{warp, Pair, OVER_BOXES};
 use culling::warp::axes::orient_axes;
-use culling::warp::twin::{self, Grid, Search, Tightening};
+use culling::warp::twin::{self, Grid, LastDepth, Search, Tightening};
 use culling::warp::{reprojections, Settings};
 use glam::DVec3;
 use harness::worlds::{shot, walled, Case, PERSPECTIVE};
@@ -38,7 +38,8 @@ fn check(lab: &Lab, pair: &Pair, settings: &Settings, what: &str) {
         slot => &matrices.moving[slot - 1],
     };
     let motions = pair.warp.read_motions().unwrap();
-    let expected = twin::measure_motion(depth, settings.reduction, settings.fastest, reprojection);
+    let last = LastDepth { depth, reprojection: &reprojection, reduction: settings.reduction, margin: settings.margin };
+    let expected = twin::measure_motion(&last, settings.fastest, settings.footprint);
     let differing = motions.iter().zip(&expected).filter(|(stage, twin)| !alike(stage, twin)).count();
     // Where the new depth is at the near or far plane, rounding may decide whether the texel shows.
     assert!(differing <= motions.len() / 1000, "{what}: {differing} of {} motions", motions.len());
@@ -71,7 +72,15 @@ fn check(lab: &Lab, pair: &Pair, settings: &Settings, what: &str) {
     assert!(bounds == twin::tighten_bounds(&tightening), "{what}: bounds");
     let Settings { seeds, iterations, threshold, tile, narrow, fill, .. } = *settings;
     let search = Search { motions, bounds: &bounds, seeds, iterations, threshold, tile, narrow, fill, axis };
-    assert!(pair.warped == twin::search_depth(&search), "{what}: warped depth");
+    let expected = twin::search_depth(&search, settings.footprint.then_some(&last));
+    if settings.footprint {
+        // Its depths come from a matrix product again, and so does which of two pixels as far as each other counts.
+        let near = |(stage, twin): &(&f32, &f32)| (*stage - *twin).abs() <= 41.0 / 16_777_216.0;
+        let differing = pair.warped.iter().zip(&expected).filter(|pair| !near(pair)).count();
+        assert!(differing <= expected.len() / 1000, "{what}: {differing} of {} warped depths", expected.len());
+    } else {
+        assert!(pair.warped == expected, "{what}: warped depth");
+    }
 }
 
 #[test]
@@ -82,9 +91,11 @@ fn every_stage_equals_its_twin_at_any_size() {
         for reduction in [1, 2, 4] {
             let case = walled(60).sized(size);
             let mut lab = Lab::new(&gpu, &case);
-            let settings = Settings { reduction, ..Settings::default() };
-            let pair = warp(&mut lab, [&first, &second], settings);
-            check(&lab, &pair, &settings, &format!("{size:?} reduced by {reduction}"));
+            for footprint in [false, true] {
+                let settings = Settings { reduction, footprint, ..Settings::default() };
+                let pair = warp(&mut lab, [&first, &second], settings);
+                check(&lab, &pair, &settings, &format!("{size:?} reduced by {reduction}, footprint: {footprint}"));
+            }
         }
     }
 }
@@ -104,6 +115,8 @@ fn every_stage_equals_its_twin_in_all_settings() {
         Settings { fastest: 0.04, ..base },
         Settings { oriented: true, lookups: 4, seeds: 3, fill: true, ..base },
         Settings { lookups: 8, tile: 2, reduction: 2, ..base },
+        Settings { footprint: true, margin: 0, reduction: 4, ..base },
+        Settings { footprint: true, margin: 2, seeds: 3, ..base },
         Settings { fill: true, steps: 0, narrow: 2.0, reduction: 2, ..base },
     ];
     let mut lab = Lab::new(&gpu, &walled(60));
@@ -121,6 +134,9 @@ fn every_stage_equals_its_twin_where_objects_move() {
     let at = |seconds: f64| Shot { seconds, ..shot(OVER_BOXES, DVec3::ZERO, PERSPECTIVE) };
     let [first, second] = [at(1.0), at(1.1)];
     let mut lab = Lab::new(&gpu, &Case::new("moving boxes", scene, vec![first, second]));
-    let pair = warp(&mut lab, [&first, &second], Settings::default());
-    check(&lab, &pair, &Settings::default(), "moving boxes");
+    for footprint in [false, true] {
+        let settings = Settings { footprint, ..Settings::default() };
+        let pair = warp(&mut lab, [&first, &second], settings);
+        check(&lab, &pair, &settings, &format!("moving boxes, footprint: {footprint}"));
+    }
 }

@@ -20,9 +20,9 @@ const PAPER: Paper = Paper {
 const SLOWER: &str =
     "Ours: the first --frames of a walk of 960 (16 s) unless told otherwise; --speed 1.6 is the paper's 10 s (7 to 13).";
 const ERODED: &str =
-    "woc erodes the warped depth, as Kim's thesis does; this paper does not say so: --set woc.erode=false.";
+    "woc erodes the warped depth, as Kim's thesis does; this paper does not say so: --set woc.erode=none.";
 const ERODED_BOTH: &str =
-    "woc and awoc erode the warp (Kim's thesis; not said in this paper): --set woc.erode=false --set awoc.erode=false.";
+    "woc and awoc erode the warp (Kim's thesis; not said in this paper): --set woc.erode=none --set awoc.erode=none.";
 
 /// "The number of used search seeds (N) was 8" (5.3).
 const EIGHT_SEEDS: &[(&str, &str)] = &[("seeds", "8")];
