@@ -418,7 +418,7 @@ const _: () = {
 /// several the nearest is in front (TOG 2018, 3.2, figure 3). Where surfaces are searched and none is found the last frame knows
 /// nothing: that is a hole, which hides nothing, or gets (FILL) the nearest depth at the extremes of the bound (AWOC, TOG 2018,
 /// 5.3). Where a search ends in the background there may be background.
-/// Twin: culling/src/warp/twin.rs
+/// Twin: culling/src/warp/twin/search.rs
 ///
 /// FOOTPRINT erodes by what was really there (ours; for Kim 2015, IV.1): what is found gets the farthest depth of the pixels that
 /// the texel's square covers where it came from, and of MARGIN pixels around them. The 3x3 texels of warp/erode_depth are 12x12
