@@ -8,7 +8,7 @@ mod parts;
 mod read;
 mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod write;
 
 pub use parts::parts_table;
@@ -79,6 +79,9 @@ pub struct Scene {
     pub objects: u64,
     /// Triangles of all objects.
     pub triangles: u64,
+    /// SHA-256 of all that is drawn, in hexadecimal; empty: not known (results of before it was written).
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub hash: String,
 }
 
 /// One method's row.

@@ -1,10 +1,12 @@
 //! `sightline bench`.
 
 use super::say;
-use crate::bench::{bench, write, BenchOptions, CaptureOrder};
+use crate::bench::{bench_watched, write, BenchOptions, CaptureOrder, Seen};
 use crate::cli::{parse_methods, BenchArgs};
-use crate::results::{parts_table, stages_table, table};
+use crate::report::{self, Gallery};
+use crate::results::{parts_table, stages_table, table, Results};
 use crate::session::{cache_folder, Session};
+use crate::trace;
 use anyhow::{bail, Context, Result};
 use engine::Capture;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -25,21 +27,49 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         cache: cache_folder(),
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
+    let mut gallery = gallery(arguments, &options, &session);
+    let mut watch = |seen: Seen<'_>| match &mut gallery {
+        Some(gallery) => gallery.look(&seen).context("packing a picture for the report"),
+        None => Ok(()),
+    };
     let mut progress = |what: &str, done: usize, all: usize| bar.show(what, done, all);
-    let results = bench(&mut session, options, &mut progress)?;
+    let results = bench_watched(&mut session, options, &mut progress, &mut watch)?;
     bar.clear();
     write(&results, &arguments.out)?;
-    if arguments.json {
-        return say(&serde_json::to_string_pretty(&results)?);
+    // What was measured is shown even where the report cannot be written.
+    let shown = write_views(arguments, &results, gallery.as_ref());
+    print(arguments, &results)?;
+    shown
+}
+
+/// Where the report's pictures are collected, if there will be any.
+fn gallery(arguments: &BenchArgs, options: &BenchOptions, session: &Session) -> Option<Gallery> {
+    let methods = || options.methods.iter().map(|(entry, settings)| (settings.label(), entry.id));
+    (options.metrics && !arguments.no_report).then(|| Gallery::new(session.frames(), methods()))
+}
+
+/// Writes trace.json and report.html, which show what results.json holds.
+fn write_views(arguments: &BenchArgs, results: &Results, gallery: Option<&Gallery>) -> Result<()> {
+    trace::write(results, &arguments.out.join("trace.json"))?;
+    if arguments.no_report {
+        return Ok(());
     }
-    say(&table(&results))?;
+    report::write(results, gallery, &arguments.out.join("report.html"))
+}
+
+fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
+    if arguments.json {
+        return say(&serde_json::to_string_pretty(results)?);
+    }
+    say(&table(results))?;
     if arguments.explain {
         for method in &results.methods {
-            say(&stages_table(&results, method))?;
+            say(&stages_table(results, method))?;
             say(&parts_table(method))?;
         }
     }
-    say(&format!("{} and results.csv are in {}", "results.json", arguments.out.display()))
+    let report = if arguments.no_report { "" } else { ", report.html" };
+    say(&format!("results.json, results.csv, trace.json{report}: in {}", arguments.out.display()))
 }
 
 fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
