@@ -1,6 +1,6 @@
 //! Frame times along the path (Kim's thesis, figure 10; EOVC thesis, figure 15).
 
-use super::plot::{colour, fitted, px, Axis, Scale, Tick, WIDTH};
+use super::plot::{colour, fitted, px, Axis, Scale, Tick, COLOURS, WIDTH};
 use super::{front, ids, is_ideal};
 use crate::results::{Method, Results};
 use serde::Serialize;
@@ -109,7 +109,7 @@ fn curve(results: &Results, method: &Method, x: &Axis, y: &Axis) -> Curve {
     let first = super::first_of(results, &method.method).is_some_and(|first| first.label == method.label);
     Curve {
         class: colour(id),
-        dashed: !first || id >= 10,
+        dashed: !first || id >= COLOURS,
         path: format!("M{}", points.join("L")),
         label: fitted(&method.label, WIDTH - RIGHT - 22.0),
         tip: method.label.clone(),

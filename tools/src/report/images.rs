@@ -69,11 +69,13 @@ impl Gallery {
         let pictures = self.of_method.entry(seen.label.to_owned()).or_default();
         let (truth, images, error) = (seen.truth, &seen.measured.images, &seen.measured.error);
         if is_worse(error, pictures.worst.as_ref().map(|worst| &worst.error)) {
-            let shown = [small_colour(truth)?, small_colour(images)?, small_difference(truth, images)?];
+            let [truth, drawn, marked] = [small_colour(truth), small_colour(images), small_difference(truth, images)];
+            let shown = [data_uri(&truth)?, data_uri(&drawn)?, data_uri(&marked)?];
             pictures.worst = Some(WorstFrame { frame: seen.frame, error: error.clone(), pictures: shown });
         }
         if seen.frame == self.frame && self.wanted.iter().any(|label| label == seen.label) {
-            pictures.buffers = Some([small_overdraw(images, &seen.measured.counts)?, small_items(images)?]);
+            let overdraw = small_overdraw(images, &seen.measured.counts);
+            pictures.buffers = Some([data_uri(&overdraw)?, data_uri(&small_items(images))?]);
         }
         Ok(())
     }
@@ -100,9 +102,16 @@ impl Shrink {
         Shrink { from: [width as usize, height as usize], to: [small as usize, small_height as usize] }
     }
 
+    /// The column and row of the small pixel that covers a source pixel.
+    fn place_of(&self, pixel: usize) -> [usize; 2] {
+        let at = [pixel % self.from[0], pixel / self.from[0]];
+        // The last small pixel whose first source pixel is not beyond this one.
+        std::array::from_fn(|axis| ((at[axis] + 1) * self.to[axis]).div_ceil(self.from[axis]) - 1)
+    }
+
     /// The picture whose every pixel is made of the source pixels (by index) that it covers, at least one. Together they
     /// are all pixels of the source, each once.
-    fn picture(&self, colour: impl Fn(&[usize]) -> [u8; 3]) -> io::Result<DataUri> {
+    fn picture(&self, colour: impl Fn(&[usize]) -> [u8; 3]) -> Picture {
         let range =
             |axis: usize, at: usize| at * self.from[axis] / self.to[axis]..(at + 1) * self.from[axis] / self.to[axis];
         let mut pixels = Vec::with_capacity(self.to[0] * self.to[1]);
@@ -114,7 +123,7 @@ impl Shrink {
                 pixels.push(colour(&covered));
             }
         }
-        data_uri(&Picture { width: self.to[0] as u32, height: self.to[1] as u32, pixels })
+        Picture { width: self.to[0] as u32, height: self.to[1] as u32, pixels }
     }
 }
 
@@ -138,14 +147,14 @@ fn rgb([red, green, blue, _]: [u8; 4]) -> [u8; 3] {
     [red, green, blue]
 }
 
-fn small_colour(images: &FrameImages) -> io::Result<DataUri> {
+fn small_colour(images: &FrameImages) -> Picture {
     Shrink::of(images.width, images.height)
         .picture(|covered| mean(covered.iter().map(|&pixel| rgb(images.colour[pixel]))))
 }
 
 /// A single wrong pixel must not be averaged away: the gravest class among the covered pixels gives the colour. The colours are
-/// those of [`Picture::difference`].
-fn small_difference(truth: &FrameImages, method: &FrameImages) -> io::Result<DataUri> {
+/// those of [`Picture::difference`]. A frame around all faults shows where to look.
+fn small_difference(truth: &FrameImages, method: &FrameImages) -> Picture {
     let marked = Picture::differences(truth, method);
     let gravity = |pixel: usize| match class_of(truth, method, pixel) {
         PixelClass::WrongColour => 3,
@@ -153,20 +162,50 @@ fn small_difference(truth: &FrameImages, method: &FrameImages) -> io::Result<Dat
         PixelClass::Tied => 1,
         PixelClass::Same => 0,
     };
-    Shrink::of(truth.width, truth.height).picture(|covered| {
+    let shrink = Shrink::of(truth.width, truth.height);
+    let mut small = shrink.picture(|covered| {
         let gravest = covered.iter().map(|&pixel| gravity(pixel)).max().unwrap_or(0);
         let of_gravest: Vec<_> = covered.iter().filter(|&&pixel| gravity(pixel) == gravest).collect();
         mean(of_gravest.into_iter().map(|&pixel| marked.pixels[pixel]))
-    })
+    });
+    let faults = (0..marked.pixels.len()).filter(|&pixel| gravity(pixel) >= 2);
+    frame_around(&mut small, faults.map(|pixel| shrink.place_of(pixel)));
+    small
 }
 
-fn small_overdraw(images: &FrameImages, counts: &[u32]) -> io::Result<DataUri> {
+/// Draws a yellow frame around places (column and row), some pixels away from them; none without places.
+fn frame_around(picture: &mut Picture, places: impl Iterator<Item = [usize; 2]>) {
+    const COLOUR: [u8; 3] = [255, 220, 0];
+    const GAP: usize = 6;
+    const THICK: usize = 2;
+    let extent = places.fold(None, |extent: Option<[[usize; 2]; 2]>, at| {
+        let [low, high] = extent.unwrap_or([at, at]);
+        Some([[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]])
+    });
+    let Some([low, high]) = extent else { return };
+    let size = [picture.width as usize, picture.height as usize];
+    // How far outside of the faults a place is, along the axis where it is farthest.
+    let outside = |at: [usize; 2]| {
+        let along = |axis: usize| low[axis].saturating_sub(at[axis]).max(at[axis].saturating_sub(high[axis]));
+        along(0).max(along(1))
+    };
+    for y in 0..size[1] {
+        for x in 0..size[0] {
+            if (GAP..GAP + THICK).contains(&outside([x, y])) {
+                picture.pixels[y * size[0] + x] = COLOUR;
+            }
+        }
+    }
+}
+
+/// The mean of the colours, so that what is thin fades instead of jumping.
+fn small_overdraw(images: &FrameImages, counts: &[u32]) -> Picture {
     let heat = Picture::overdraw(images.width, images.height, counts);
     Shrink::of(images.width, images.height).picture(|covered| mean(covered.iter().map(|&pixel| heat.pixels[pixel])))
 }
 
 /// Colours of objects are names: their mean would name an object that is not there. The middle pixel stands for all.
-fn small_items(images: &FrameImages) -> io::Result<DataUri> {
+fn small_items(images: &FrameImages) -> Picture {
     let items = Picture::items(images);
     Shrink::of(images.width, images.height).picture(|covered| items.pixels[covered[covered.len() / 2]])
 }

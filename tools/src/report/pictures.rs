@@ -70,7 +70,7 @@ fn shown_worst(label: &str, worst: &WorstFrame) -> Worst {
     let error = &worst.error;
     let psnr = error.psnr_db.map_or("colours identical".to_owned(), |psnr| format!("PSNR {} dB", number(psnr)));
     let fault = format!(
-        "{} of {} visible objects missed, {} pixels of another depth, {psnr}",
+        "visible objects missed: {} of {}; pixels of another depth: {}; {psnr}",
         error.false_negatives, error.ref_visible, error.differing_pixels
     );
     Worst { label: label.to_owned(), frame: worst.frame, fault, pictures: worst.pictures.clone() }

@@ -95,7 +95,7 @@ pub fn plane(results: &Results) -> Option<Plane> {
         x_ticks: x.ticks(),
         y_ticks: y.ticks(),
         x_title: x_title(results),
-        points: points(results, &places, &front),
+        points: points(results, &places, &front, y.place(0.0)),
         front: front_path(&front.iter().map(|&place| places[place]).collect::<Vec<_>>()),
         legend,
         all_labelled: results.methods.len() <= LABELLED,
@@ -133,7 +133,7 @@ fn alt(results: &Results, front: &[usize]) -> String {
     )
 }
 
-fn points(results: &Results, places: &[[f64; 2]], front: &[usize]) -> Vec<Point> {
+fn points(results: &Results, places: &[[f64; 2]], front: &[usize], zero: f64) -> Vec<Point> {
     let ids = ids(results);
     let few = results.methods.len() <= LABELLED;
     let wanted = |place: usize| few || front.contains(&place) || is_ideal(&results.methods[place]);
@@ -143,7 +143,7 @@ fn points(results: &Results, places: &[[f64; 2]], front: &[usize]) -> Vec<Point>
         .enumerate()
         .map(|(place, method)| wanted(place).then_some(method.label.as_str()))
         .collect();
-    let labels = labels(places, &texts);
+    let labels = labels(places, &texts, zero);
     let made = results.methods.iter().zip(places).zip(labels).enumerate().map(|(place, ((method, at), label))| {
         let id = ids.iter().position(|id| *id == method.method).unwrap_or(0);
         Point {
@@ -171,11 +171,11 @@ fn meet(one: &Box, other: &Box) -> bool {
     one[0] < other[2] && other[0] < one[2] && one[1] < other[3] && other[1] < one[3]
 }
 
-/// Each label where it covers neither a mark nor another label: near its point, or else higher or lower with a line to it. One for
-/// which there is no such place is left out; the tables have it.
-fn labels(points: &[[f64; 2]], texts: &[Option<&str>]) -> Vec<Option<Label>> {
+/// Each label where it covers neither a mark, nor another label, nor the line of no error (at this height): near its point, or
+/// else higher or lower with a line to it. One for which there is no such place is left out; the tables have it.
+fn labels(points: &[[f64; 2]], texts: &[Option<&str>], zero: f64) -> Vec<Option<Label>> {
     let marks = points.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]);
-    let mut taken: Vec<Box> = marks.collect();
+    let mut taken: Vec<Box> = marks.chain([[LEFT, zero, RIGHT, zero]]).collect();
     let mut labels: Vec<Option<Label>> = points.iter().map(|_| None).collect();
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&one, &other| points[one][0].total_cmp(&points[other][0]));
@@ -244,12 +244,13 @@ mod tests {
         // Twelve points on one line, some on one spot: as a run of exact methods looks.
         let points: Vec<[f64; 2]> = (0..12).map(|i| [200.0 + 7.0 * f64::from(i / 2), BOTTOM - 24.0]).collect();
         let texts: Vec<Option<&str>> = points.iter().map(|_| Some("roc-iterative")).collect();
-        let labels = labels(&points, &texts);
+        let labels = labels(&points, &texts, BOTTOM - 24.0);
         let spaces: Vec<Box> =
             labels.iter().flatten().map(|l| [l.x, l.y - 12.0, l.x + text_width(&l.text), l.y + 4.0]).collect();
         assert_eq!(spaces.len(), points.len());
         for (place, space) in spaces.iter().enumerate() {
             assert!(spaces[..place].iter().all(|other| !meet(space, other)), "{place}");
+            assert!(!meet(space, &[LEFT, BOTTOM - 24.0, RIGHT, BOTTOM - 24.0]), "{place}");
             assert!(points.iter().all(|[x, y]| !meet(space, &[*x, *y, *x, *y])), "{place}");
         }
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Colours that the style sheet has, as classes `c0` and so on.
-const COLOURS: usize = 10;
+pub const COLOURS: usize = 10;
 
 /// Pixels from the left to the right edge of each plot.
 pub const WIDTH: f64 = 900.0;

@@ -1,13 +1,16 @@
 //! What each method's frame is spent on, stage by stage (Kim's thesis, figure 9; EOVC thesis, figure 16).
 
 use super::bars::{bars, Bars, Part, RowData};
-use super::plot::{colour, number};
+use super::plot::{colour, number, COLOURS};
 use crate::results::{Method, Results};
 use crate::stats;
 use serde::Serialize;
 
 /// What no stage accounts for: submitting, and waiting for read-backs in the middle of the frame.
 const BETWEEN: &str = "between stages";
+
+/// Kinds of stages that take too little time for a colour of their own.
+const OTHERS: &str = "other stages";
 
 /// Two plots of the same times, and what their colours mean.
 #[derive(Serialize)]
@@ -33,7 +36,9 @@ pub fn stages(results: &Results) -> Option<Stages> {
     let row = |method, shares| row(method, &names, shares);
     let rows = |shares: bool| results.methods.iter().map(|method| row(method, shares)).collect();
     let alt = |of: &str| format!("Mean time of each stage of each method, {of}; the same numbers are in results.json.");
-    let keys = names.iter().enumerate().map(|(place, name)| Family { name: (*name).to_owned(), class: colour(place) });
+    let own = if names.len() > COLOURS { COLOURS - 1 } else { names.len() };
+    let keys = names[..own].iter().map(|name| (*name).to_owned()).chain((own < names.len()).then(|| OTHERS.to_owned()));
+    let keys = keys.enumerate().map(|(place, name)| Family { name, class: class_at(place) });
     let rest = Family { name: BETWEEN.to_owned(), class: "rest".to_owned() };
     Some(Stages {
         milliseconds: bars(rows(false), "ms of the mean frame", 0.0, alt("in milliseconds")),
@@ -42,18 +47,26 @@ pub fn stages(results: &Results) -> Option<Stages> {
     })
 }
 
-/// Kinds of stages that ran, in the order in which the methods first name them.
+/// Kinds of stages that ran, those that took most time first: they have a colour of their own, the rest share the last one.
 fn families(results: &Results) -> Vec<&str> {
-    let mut names = Vec::new();
+    let mut times: Vec<(&str, f64)> = Vec::new();
     for method in &results.methods {
-        for stage in method.stages.iter().filter(|stage| mean_ms(method, &stage.name) > 0.0) {
-            let family = family(&stage.name);
-            if !names.contains(&family) {
-                names.push(family);
+        for stage in &method.stages {
+            let (name, ms) = (family(&stage.name), mean_ms(method, &stage.name));
+            match times.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, sum)) => *sum += ms,
+                None => times.push((name, ms)),
             }
         }
     }
-    names
+    times.retain(|(_, ms)| *ms > 0.0);
+    times.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+    times.into_iter().map(|(name, _)| name).collect()
+}
+
+/// The style sheet's class of the kind at this place.
+fn class_at(place: usize) -> String {
+    colour(place.min(COLOURS - 1))
 }
 
 fn family(stage: &str) -> &str {
@@ -78,9 +91,55 @@ fn row(method: &Method, families: &[&str], shares: bool) -> RowData {
         let tip = format!("{}: {name} {} ms, {} % of the frame", method.label, number(ms), number(share));
         Part { length: ms * unit, class, tip }
     };
-    let class_of = |name: &str| colour(families.iter().position(|known| *known == family(name)).unwrap_or(0));
+    let class_of = |name: &str| class_at(families.iter().position(|known| *known == family(name)).unwrap_or(0));
     let mut parts: Vec<Part> = times.iter().map(|(name, ms)| part(name, *ms, class_of(name))).collect();
     parts.push(part(BETWEEN, frame - summed, "rest".to_owned()));
     let value = format!("{} ms", number(frame));
     RowData { label: method.label.clone(), lanes: vec![parts], value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::tests::results;
+    use crate::results::Stage;
+
+    fn with_stages(times: &[(&str, f64)]) -> Results {
+        let mut results = results();
+        results.methods.truncate(1);
+        let method = &mut results.methods[0];
+        method.stages = times.iter().map(|(name, _)| Stage { name: (*name).into(), ..Stage::default() }).collect();
+        method.frames.stages = times.iter().map(|(name, ms)| ((*name).to_owned(), vec![Some(*ms), None])).collect();
+        results
+    }
+
+    #[test]
+    fn stages_of_one_kind_share_a_colour_and_the_slowest_kind_comes_first() {
+        let results =
+            with_stages(&[("pack/count", 1.0), ("draw/objects:late", 8.0), ("pack/scan", 2.0), ("eovc/none", 0.0)]);
+        assert_eq!(families(&results), ["draw", "pack"]);
+        let names: Vec<_> = stages(&results).unwrap().families.into_iter().map(|family| family.name).collect();
+        assert_eq!(names, ["draw", "pack", BETWEEN]);
+    }
+
+    #[test]
+    fn more_kinds_than_colours_share_the_last() {
+        let named: Vec<(String, f64)> =
+            (0..13u32).map(|kind| (format!("kind{kind}/stage"), 20.0 - f64::from(kind))).collect();
+        let times: Vec<(&str, f64)> = named.iter().map(|(name, ms)| (name.as_str(), *ms)).collect();
+        let families = stages(&with_stages(&times)).unwrap().families;
+        assert_eq!(families.len(), COLOURS + 1);
+        assert_eq!((families[COLOURS - 1].name.as_str(), families[COLOURS - 1].class.as_str()), (OTHERS, "c9"));
+    }
+
+    #[test]
+    fn the_parts_of_a_frame_are_as_long_as_the_frame() {
+        let results = with_stages(&[("a/a", 900.0), ("b/b", 300.0)]);
+        for (shares, whole) in [(false, 1000.0), (true, 100.0)] {
+            let row = row(&results.methods[0], &families(&results), shares);
+            let lengths: Vec<f64> = row.lanes[0].iter().map(|part| part.length).collect();
+            assert!((lengths.iter().sum::<f64>() - whole).abs() < 1e-9, "{lengths:?}");
+            assert!((lengths[0] - 0.45 * whole).abs() < 1e-9, "ran in one of two frames: {lengths:?}");
+        }
+    }
 }

@@ -50,24 +50,41 @@ fn every_pixel_of_the_source_counts_once() {
     for (width, height) in [(1, 1), (640, 3), (641, 480), (1300, 7), (5000, 1), (3, 5000)] {
         let shrink = Shrink::of(width, height);
         assert!(shrink.to[0] <= WIDEST as usize && shrink.to[1] > 0);
-        let seen = std::cell::RefCell::new(vec![0; (width * height) as usize]);
+        let width = width as usize;
+        let seen = std::cell::RefCell::new(vec![0; width * height as usize]);
         let picture = shrink.picture(|covered| {
             assert!(!covered.is_empty());
             covered.iter().for_each(|&pixel| seen.borrow_mut()[pixel] += 1);
+            assert!(covered.iter().all(|&pixel| shrink.place_of(pixel) == shrink.place_of(covered[0])));
             [0; 3]
         });
-        assert_eq!(shown(&picture.unwrap()).dimensions(), (shrink.to[0] as u32, shrink.to[1] as u32));
+        assert_eq!([picture.width as usize, picture.height as usize], shrink.to);
+        let corner = shrink.place_of(seen.borrow().len() - 1);
+        assert_eq!([corner[0] + 1, corner[1] + 1], shrink.to);
         assert!(seen.borrow().iter().all(|times| *times == 1), "{width}x{height}");
     }
 }
 
 #[test]
 fn a_single_wrong_pixel_stays_red() {
-    let marked = shown(&small_difference(&frame(0), &frame(1)).unwrap());
-    assert_eq!(marked.dimensions().0, WIDEST);
-    let red = marked.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();
-    assert_eq!(red, 1);
-    assert!(marked.pixels().filter(|pixel| pixel.0 == [50, 25, 10]).count() > 600);
+    let marked = small_difference(&frame(0), &frame(1));
+    assert_eq!(marked.width, WIDEST);
+    let count = |colour: [u8; 3]| marked.pixels.iter().filter(|pixel| **pixel == colour).count();
+    assert_eq!(count([255, 0, 0]), 1);
+    assert!(count([50, 25, 10]) > 600);
+}
+
+#[test]
+fn a_frame_is_drawn_around_faults_and_only_around_them() {
+    let black = || Picture { width: 40, height: 30, pixels: vec![[0; 3]; 40 * 30] };
+    let mut none = black();
+    frame_around(&mut none, std::iter::empty());
+    assert_eq!(none, black());
+    let mut one = black();
+    frame_around(&mut one, [[20, 15], [22, 15]].into_iter());
+    let yellow = |x: usize, y: usize| one.pixels[y * 40 + x] != [0; 3];
+    assert!(yellow(14, 15) && yellow(13, 15) && yellow(28, 15) && yellow(20, 9) && yellow(20, 22));
+    assert!(!yellow(12, 15) && !yellow(15, 15) && !yellow(20, 15) && !yellow(21, 16) && !yellow(20, 23));
 }
 
 #[test]
