@@ -351,10 +351,18 @@ pub fn header(session: &Session, command: &str) -> Results {
     }
 }
 
+/// Makes the folder for results if it is not there.
+///
+/// # Errors
+/// There is a file in its place, or no right to make it.
+pub fn make_folder(folder: &std::path::Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))
+}
+
 /// Writes results.json and results.csv to a folder, which is made if it is not there.
 pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+    make_folder(folder)?;
     results.write_json(&folder.join("results.json"))?;
     results.write_csv(&folder.join("results.csv"))?;
     Ok(())

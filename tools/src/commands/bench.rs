@@ -1,7 +1,7 @@
 //! `sightline bench`.
 
 use super::say;
-use crate::bench::{bench_watched, write, BenchOptions, CaptureOrder, Seen};
+use crate::bench::{bench_watched, make_folder, write, BenchOptions, CaptureOrder, Seen};
 use crate::cli::{parse_methods, BenchArgs};
 use crate::report::{self, Gallery};
 use crate::results::{parts_table, stages_table, table, Results};
@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
     let methods = parse_methods(&arguments.methods.method, &arguments.methods.set)?;
+    make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
     let bar = Bar::new(&session)?;
@@ -48,13 +49,15 @@ fn gallery(arguments: &BenchArgs, options: &BenchOptions, session: &Session) -> 
     (options.metrics && !arguments.no_report).then(|| Gallery::new(session.frames(), methods()))
 }
 
-/// Writes trace.json and report.html, which show what results.json holds.
+/// Writes trace.json and report.html, which show what results.json holds. Each is tried, and the first error told.
 fn write_views(arguments: &BenchArgs, results: &Results, gallery: Option<&Gallery>) -> Result<()> {
-    trace::write(results, &arguments.out.join("trace.json"))?;
-    if arguments.no_report {
-        return Ok(());
+    let trace = trace::write(results, &arguments.out.join("trace.json"));
+    if !arguments.no_report {
+        let report = report::write(results, gallery, &arguments.out.join("report.html"));
+        trace?;
+        return report;
     }
-    report::write(results, gallery, &arguments.out.join("report.html"))
+    Ok(trace?)
 }
 
 fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
@@ -80,7 +83,6 @@ fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
     if arguments.no_metrics {
         bail!("--capture needs the untimed pass: leave --no-metrics out");
     }
-    std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
     Ok(Some(CaptureOrder { frame, folder: arguments.out.clone(), library: Capture::load()? }))
 }
 

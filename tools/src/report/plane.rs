@@ -13,6 +13,8 @@ const TOP: f64 = 30.0;
 const BOTTOM: f64 = HEIGHT - 70.0;
 /// Points that all have their label; of more, only those of the front and the ideal.
 const LABELLED: usize = 16;
+/// Between a label and the next in its row, pixels.
+const SPACING: f64 = 8.0;
 /// Errors below this are spread evenly, percent: one object of ten thousand is seen to be no zero.
 const LINEAR_TO: f64 = 0.01;
 /// The least error that the axis reaches up to, percent, so that a plane of exact methods has a scale.
@@ -181,8 +183,8 @@ fn labels(points: &[[f64; 2]], texts: &[Option<&str>], zero: f64) -> Vec<Option<
     order.sort_by(|&one, &other| points[one][0].total_cmp(&points[other][0]));
     for place in order {
         let Some(text) = texts[place] else { continue };
-        let free =
-            candidates(points[place], text_width(text)).find(|space| !taken.iter().any(|other| meet(space, other)));
+        let free = candidates(points[place], text_width(text) + SPACING)
+            .find(|space| !taken.iter().any(|other| meet(space, other)));
         if let Some(space) = free {
             taken.push(space);
             labels[place] = Some(Label {
