@@ -92,6 +92,7 @@ fn a_report_is_made_of_results_beside_them_or_where_asked() {
     assert_eq!(folder.read("other.html"), folder.read("results.html"));
     let error = sightline("report", &[&folder.0.join("no.json")]).unwrap_err();
     assert!(error.contains("no.json: cannot read it") && !error.contains('\n'), "{error}");
+    assert_eq!(error.matches("(os error").count(), 1, "the system's words, once: {error}");
 }
 
 #[test]

@@ -231,12 +231,12 @@ pub enum ResultsError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The file could not be read.
-    #[error("{}: cannot read it: {source}", path.display())]
+    #[error("{}: cannot read it: {cause}", path.display())]
     Read {
         /// The file asked for.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What the system said. Not a `source`: the line has it already.
+        cause: std::io::Error,
     },
     /// The content breaks the contract.
     #[error("{}: {field}: {fault}", path.display())]

@@ -1,6 +1,6 @@
 //! The plane of run time against error: every method and setting as a point, and the front of those worth choosing.
 
-use super::plot::{colour, mark, number, text_width, Axis, Scale, Tick, WIDTH};
+use super::plot::{colour, mark, number, px, text_width, Axis, Scale, Tick, WIDTH};
 use super::{front, ids, is_ideal, is_measured, ratio_to};
 use crate::results::{Method, Results};
 use serde::Serialize;
@@ -49,13 +49,14 @@ struct Point {
     ideal: bool,
 }
 
-/// A label, and the end of the line that leads to its point.
+/// A label, and the line that leads from its point to its nearest edge.
 #[derive(Serialize)]
 struct Label {
     text: String,
     x: f64,
     y: f64,
     from: [f64; 2],
+    to: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -187,15 +188,17 @@ fn labels(points: &[[f64; 2]], texts: &[Option<&str>], zero: f64) -> Vec<Option<
             .find(|space| !taken.iter().any(|other| meet(space, other)));
         if let Some(space) = free {
             taken.push(space);
-            labels[place] = Some(Label {
-                text: text.to_owned(),
-                x: space[0],
-                y: super::plot::px(space[3] - 4.0),
-                from: points[place],
-            });
+            labels[place] = Some(label(text, space, points[place]));
         }
     }
     labels
+}
+
+fn label(text: &str, space: Box, from: [f64; 2]) -> Label {
+    // Letters stand on a line a quarter of the row above its lower edge.
+    let baseline = space[3] - 4.0;
+    let nearest = [from[0].clamp(space[0], space[2] - SPACING), from[1].clamp(space[1] + 3.0, baseline + 2.0)];
+    Label { text: text.to_owned(), x: px(space[0]), y: px(baseline), from, to: nearest.map(px) }
 }
 
 /// Spaces for a label of this width, best first, all inside the plot.
