@@ -111,6 +111,11 @@ fn ratio_to(results: &Results, id: &str, method: &Method) -> Option<f64> {
     (reference > 0.0).then(|| method.frame_ms.median / reference)
 }
 
+/// What the plane shows as a method's time: the multiple of the ideal's, or milliseconds where that did not run.
+fn time(results: &Results, method: &Method) -> f64 {
+    ratio_to(results, "ref", method).unwrap_or(method.frame_ms.median)
+}
+
 /// Ids of methods, each once, in the order of the run: a method's place here is its colour.
 fn ids(results: &Results) -> Vec<&str> {
     let mut ids = Vec::new();
@@ -138,7 +143,7 @@ fn front(results: &Results) -> Vec<usize> {
     let real: Vec<usize> = (0..results.methods.len()).filter(|&place| !is_ideal(&results.methods[place])).collect();
     let points: Vec<(f64, f64)> = real
         .iter()
-        .map(|&place| (results.methods[place].frame_ms.median, results.methods[place].object_error_percent))
+        .map(|&place| (time(results, &results.methods[place]), results.methods[place].object_error_percent))
         .collect();
     crate::pareto::front(&points).into_iter().map(|point| real[point]).collect()
 }

@@ -1,7 +1,7 @@
 //! The plane of run time against error: every method and setting as a point, and the front of those worth choosing.
 
 use super::plot::{colour, mark, number, px, text_width, Axis, Scale, Tick, WIDTH};
-use super::{front, ids, is_ideal, is_measured, ratio_to};
+use super::{front, ids, is_ideal, is_measured, ratio_to, time};
 use crate::results::{Method, Results};
 use serde::Serialize;
 
@@ -104,11 +104,6 @@ pub fn plane(results: &Results) -> Option<Plane> {
         all_labelled: results.methods.len() <= LABELLED,
         alt: alt(results, &front),
     })
-}
-
-/// As a multiple of the ideal's, or in milliseconds where that did not run.
-fn time(results: &Results, method: &Method) -> f64 {
-    ratio_to(results, "ref", method).unwrap_or(method.frame_ms.median)
 }
 
 fn x_title(results: &Results) -> String {
