@@ -47,6 +47,21 @@ pub struct CaptureOrder {
 /// Told how far the benchmark is: what it does, steps done, steps in all.
 pub type Progress<'a> = &'a mut dyn FnMut(&str, usize, usize);
 
+/// A frame of the untimed pass, as it is measured.
+pub struct Seen<'a> {
+    /// The method's label.
+    pub label: &'a str,
+    /// The frame's number, from 0.
+    pub frame: usize,
+    /// What `none` drew.
+    pub truth: &'a FrameImages,
+    /// What the method drew, and how far it is from the truth.
+    pub measured: &'a Measured,
+}
+
+/// Shown every frame that is measured, one method after the other.
+pub type Watch<'a> = &'a mut dyn FnMut(Seen<'_>) -> Result<()>;
+
 /// Everything recorded of one method.
 #[derive(Default)]
 struct Records {
@@ -59,7 +74,17 @@ struct Records {
 }
 
 /// Runs the benchmark.
-pub fn bench(session: &mut Session, mut options: BenchOptions, progress: Progress<'_>) -> Result<Results> {
+pub fn bench(session: &mut Session, options: BenchOptions, progress: Progress<'_>) -> Result<Results> {
+    bench_watched(session, options, progress, &mut |_| Ok(()))
+}
+
+/// Runs the benchmark and shows the frames of the untimed pass; without `metrics` there are none.
+pub fn bench_watched(
+    session: &mut Session,
+    mut options: BenchOptions,
+    progress: Progress<'_>,
+    watch: Watch<'_>,
+) -> Result<Results> {
     let shared_mib = session.gpu.memory_mib();
     let truth = make_truth(session, &options, progress)?;
     let mut contenders = Vec::new();
@@ -70,7 +95,8 @@ pub fn bench(session: &mut Session, mut options: BenchOptions, progress: Progres
     time(session, &mut contenders, &mut records, options.warmup, progress)?;
     let mut pairs = Pair::of(&options.pairs, &contenders)?;
     if let Some(images) = &truth.run {
-        measure(session, &mut contenders, &mut records, images, &mut pairs, &mut options, progress)?;
+        let followers = Followers { pairs: &mut pairs, progress, watch };
+        measure(session, &mut contenders, &mut records, images, &mut options, followers)?;
     }
     let mut methods: Vec<_> =
         contenders.iter().zip(&records).map(|(contender, records)| method(contender, records, shared_mib)).collect();
@@ -132,15 +158,22 @@ fn time(
     Ok(())
 }
 
+/// Who looks on at the untimed pass.
+struct Followers<'a> {
+    pairs: &'a mut [Pair],
+    progress: Progress<'a>,
+    watch: Watch<'a>,
+}
+
 fn measure(
     session: &mut Session,
     contenders: &mut [Contender],
     records: &mut [Records],
     truth: &RunTruth,
-    pairs: &mut [Pair],
     options: &mut BenchOptions,
-    progress: Progress<'_>,
+    followers: Followers<'_>,
 ) -> Result<()> {
+    let Followers { pairs, progress, watch } = followers;
     warm_up(session, contenders, options.warmup)?;
     for frame in 0..session.frames() {
         let truth = truth.frame(session, frame)?;
@@ -151,6 +184,7 @@ fn measure(
                 None => contender.measured(session, frame, &truth)?,
                 Some(order) => order.measured(session, contender, &truth)?,
             };
+            watch(Seen { label: &contender.label(), frame, truth: truth.images(), measured: &measured })?;
             let images = records.push(measured);
             pictures.push(pairs.iter().any(|pair| pair.needs(place)).then_some(images));
         }
@@ -306,6 +340,7 @@ pub fn header(session: &Session, command: &str) -> Results {
             name: session.scene.name.clone(),
             objects: session.world.len() as u64,
             triangles: session.world.triangles(),
+            hash: session.scene_hash(),
         },
         path: session.path().describe(),
         speed: given.speed,
@@ -316,10 +351,18 @@ pub fn header(session: &Session, command: &str) -> Results {
     }
 }
 
+/// Makes the folder for results if it is not there.
+///
+/// # Errors
+/// There is a file in its place, or no right to make it.
+pub fn make_folder(folder: &std::path::Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))
+}
+
 /// Writes results.json and results.csv to a folder, which is made if it is not there.
 pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+    make_folder(folder)?;
     results.write_json(&folder.join("results.json"))?;
     results.write_csv(&folder.join("results.csv"))?;
     Ok(())

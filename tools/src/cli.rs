@@ -31,9 +31,11 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Runs methods over a camera path: times, errors against the truth, stage by stage; writes results.json and results.csv
+    /// Runs methods over a camera path: times, errors against the truth, stage by stage; writes results.json, results.csv, report.html and trace.json
     #[command(after_help = BENCH_HELP)]
     Bench(BenchArgs),
+    /// Makes a report of a results.json: plots and tables, without the pictures that only `bench` has
+    Report(ReportArgs),
     /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
     /// Lists scenes; shows or exports one with its camera path
@@ -146,13 +148,27 @@ pub struct BenchArgs {
     /// Prints each stage: ran or skipped, why, and its time; then the parts of the frame with their share
     #[arg(long)]
     pub explain: bool,
-    /// Folder for results.json and results.csv; of a table, for table-TABLE.txt and a folder with these
-    /// two (or warps.csv) for each scene, and below it for each size or speed
+    /// Leaves out report.html, and the pictures that are collected for it
+    #[arg(long)]
+    pub no_report: bool,
+    /// Folder for results.json, results.csv, report.html and trace.json (for ui.perfetto.dev); of a table, for
+    /// table-TABLE.txt and a folder with the first two (or warps.csv) for each scene, and below it for each size or speed
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Prints results.json instead of the table
     #[arg(long)]
     pub json: bool,
+}
+
+/// `sightline report`.
+#[derive(Args, Clone, Debug)]
+pub struct ReportArgs {
+    /// The results that `sightline bench` wrote
+    #[arg(value_name = "RESULTS.json")]
+    pub results: PathBuf,
+    /// The HTML file; the results' name with .html if left out
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// What a shot shows.

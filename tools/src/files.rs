@@ -7,24 +7,24 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Why a file could not be written. One line that names the file.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot write it: {source}; nothing was left behind", path.display())]
+#[error("{}: cannot write it: {cause}; nothing was left behind", path.display())]
 pub struct WriteError {
     /// The file asked for.
     pub path: PathBuf,
-    /// What the system said: a full disk, a missing folder, a missing right.
-    pub source: io::Error,
+    /// What the system said: a full disk, a missing folder, a missing right. Not a `source`: the line has it already.
+    pub cause: io::Error,
 }
 
 /// Writes `path` through `fill`. A reader sees the old content or the new one, never a part of either; when anything
 /// fails, the disk being full included, the old content stays and the temporary file is removed.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
-    let failed = |source| WriteError { path: path.to_path_buf(), source };
+    let failed = |cause| WriteError { path: path.to_path_buf(), cause };
     let temporary = temporary_beside(path).map_err(failed)?;
     let written = fill_file(&temporary, fill).and_then(|()| fs::rename(&temporary, path));
-    written.map_err(|source| {
+    written.map_err(|cause| {
         // The first error is the one to report; a temporary file that was never made cannot be removed.
         let _ = fs::remove_file(&temporary);
-        failed(source)
+        failed(cause)
     })
 }
 
@@ -95,7 +95,10 @@ pub(crate) mod tests {
             w.write_all(b"half of the ne")?;
             Err(io::Error::from(io::ErrorKind::StorageFull))
         });
-        let message = full.unwrap_err().to_string();
+        // As the program prints it, the chain of causes: the system's words must not be there twice.
+        let message = format!("{:#}", anyhow::Error::from(full.unwrap_err()));
+        let said = io::Error::from(io::ErrorKind::StorageFull).to_string();
+        assert_eq!(message.matches(&said).count(), 1, "{message}");
         assert!(message.contains("a.txt: cannot write it"), "{message}");
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(folder.names(), ["a.txt"]);

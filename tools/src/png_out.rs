@@ -50,10 +50,15 @@ impl Picture {
         Self::of(width, height, pixels.collect())
     }
 
-    /// Truth, method, and what differs, side by side. In the third picture: red where the depth differs, blue where a
-    /// tie went to another object (no error), magenta where the same object has another colour (a defect), and else the
-    /// truth at a quarter of its brightness, to find one's way. Both frames have the same size.
+    /// Truth, method, and [what differs](Self::differences), side by side. Both frames have the same size.
     pub fn difference(truth: &FrameImages, method: &FrameImages) -> Self {
+        Self::side_by_side(&[Self::colour(truth), Self::colour(method), Self::differences(truth, method)])
+    }
+
+    /// Red where the depth differs, blue where a tie went to another object (no error), magenta where the same object has
+    /// another colour (a defect), and else the truth at a quarter of its brightness, to find one's way. Both frames have the
+    /// same size.
+    pub fn differences(truth: &FrameImages, method: &FrameImages) -> Self {
         let pixels = (0..truth.colour.len()).map(|pixel| match class_of(truth, method, pixel) {
             PixelClass::Differs => [255, 0, 0],
             PixelClass::Tied => [40, 80, 255],
@@ -63,8 +68,7 @@ impl Picture {
                 [red / 4, green / 4, blue / 4]
             }
         });
-        let classes = Self::of(truth.width, truth.height, pixels.collect());
-        Self::side_by_side(&[Self::colour(truth), Self::colour(method), classes])
+        Self::of(truth.width, truth.height, pixels.collect())
     }
 
     /// Pictures from left to right, 4 grey pixels apart; lower ones end in black.
@@ -90,14 +94,17 @@ impl Picture {
 
     /// Writes a PNG file, whole or not at all.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        write_atomically(path, |to| {
-            let encoder = image::codecs::png::PngEncoder::new(to);
-            let bytes = self.pixels.as_flattened();
-            let written = encoder.write_image(bytes, self.width, self.height, ExtendedColorType::Rgb8);
-            written.map_err(|error| match error {
-                image::ImageError::IoError(error) => error,
-                other => io::Error::other(other.to_string()),
-            })
+        write_atomically(path, |to| self.encode(to))
+    }
+
+    /// Writes the bytes of a PNG file.
+    pub fn encode(&self, to: &mut dyn io::Write) -> io::Result<()> {
+        let encoder = image::codecs::png::PngEncoder::new(to);
+        let bytes = self.pixels.as_flattened();
+        let written = encoder.write_image(bytes, self.width, self.height, ExtendedColorType::Rgb8);
+        written.map_err(|error| match error {
+            image::ImageError::IoError(error) => error,
+            other => io::Error::other(other.to_string()),
         })
     }
 

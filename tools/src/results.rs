@@ -8,7 +8,7 @@ mod parts;
 mod read;
 mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod write;
 
 pub use parts::parts_table;
@@ -79,6 +79,9 @@ pub struct Scene {
     pub objects: u64,
     /// Triangles of all objects.
     pub triangles: u64,
+    /// SHA-256 of all that is drawn, in hexadecimal; empty: not known (results of before it was written).
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub hash: String,
 }
 
 /// One method's row.
@@ -228,12 +231,12 @@ pub enum ResultsError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The file could not be read.
-    #[error("{}: cannot read it: {source}", path.display())]
+    #[error("{}: cannot read it: {cause}", path.display())]
     Read {
         /// The file asked for.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What the system said. Not a `source`: the line has it already.
+        cause: std::io::Error,
     },
     /// The content breaks the contract.
     #[error("{}: {field}: {fault}", path.display())]

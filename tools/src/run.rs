@@ -27,6 +27,8 @@ pub struct Measured {
     pub drawn: Drawn,
     /// Fragments that passed the early tests, over the pixels that show something; 0 if none does.
     pub overdraw: f64,
+    /// How often each pixel was shaded, row-major, top row first.
+    pub counts: Vec<u32>,
     /// Queries, boxes and rays.
     pub work: Work,
     /// The pictures.
@@ -74,7 +76,7 @@ impl Contender {
         let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
         let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
         let overdraw = if covered == 0 { 0.0 } else { fragments as f64 / covered as f64 };
-        Ok(Measured { error, drawn, overdraw, work, images })
+        Ok(Measured { error, drawn, overdraw, counts, work, images })
     }
 
     /// Runs one frame through a view, with or without the item buffer.

@@ -110,9 +110,14 @@ impl Session {
         Ok(View::new(&shot, self.options.size, frame, self.gpu.snap_px()))
     }
 
+    /// SHA-256 of the scene as loaded, in hexadecimal.
+    pub fn scene_hash(&self) -> String {
+        self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
     /// Says in full what pictures of this run depend on: the key of its visible sets.
     pub fn key(&self) -> String {
-        let hash: String = self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect();
+        let hash = self.scene_hash();
         let [width, height] = self.options.size;
         let device = self.gpu.info().map(|info| info.cache_key.clone()).unwrap_or_default();
         let shaders: String = shaders::STAGES

@@ -1,10 +1,12 @@
 //! `sightline bench`.
 
 use super::say;
-use crate::bench::{bench, write, BenchOptions, CaptureOrder};
+use crate::bench::{bench_watched, make_folder, write, BenchOptions, CaptureOrder, Seen};
 use crate::cli::{parse_methods, BenchArgs};
-use crate::results::{parts_table, stages_table, table};
+use crate::report::{self, Gallery};
+use crate::results::{parts_table, stages_table, table, Results};
 use crate::session::{cache_folder, Session};
+use crate::trace;
 use anyhow::{bail, Context, Result};
 use engine::Capture;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -13,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
     let methods = parse_methods(&arguments.methods.method, &arguments.methods.set)?;
+    make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
     let bar = Bar::new(&session)?;
@@ -25,21 +28,51 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         cache: cache_folder(),
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
+    let mut gallery = gallery(arguments, &options, &session);
+    let mut watch = |seen: Seen<'_>| match &mut gallery {
+        Some(gallery) => gallery.look(&seen).context("packing a picture for the report"),
+        None => Ok(()),
+    };
     let mut progress = |what: &str, done: usize, all: usize| bar.show(what, done, all);
-    let results = bench(&mut session, options, &mut progress)?;
+    let results = bench_watched(&mut session, options, &mut progress, &mut watch)?;
     bar.clear();
     write(&results, &arguments.out)?;
-    if arguments.json {
-        return say(&serde_json::to_string_pretty(&results)?);
+    // What was measured is shown even where the report cannot be written.
+    let shown = write_views(arguments, &results, gallery.as_ref());
+    print(arguments, &results)?;
+    shown
+}
+
+/// Where the report's pictures are collected, if there will be any.
+fn gallery(arguments: &BenchArgs, options: &BenchOptions, session: &Session) -> Option<Gallery> {
+    let methods = || options.methods.iter().map(|(entry, settings)| (settings.label(), entry.id));
+    (options.metrics && !arguments.no_report).then(|| Gallery::new(session.frames(), methods()))
+}
+
+/// Writes trace.json and report.html, which show what results.json holds. Each is tried, and the first error told.
+fn write_views(arguments: &BenchArgs, results: &Results, gallery: Option<&Gallery>) -> Result<()> {
+    let trace = trace::write(results, &arguments.out.join("trace.json"));
+    if !arguments.no_report {
+        let report = report::write(results, gallery, &arguments.out.join("report.html"));
+        trace?;
+        return report;
     }
-    say(&table(&results))?;
+    Ok(trace?)
+}
+
+fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
+    if arguments.json {
+        return say(&serde_json::to_string_pretty(results)?);
+    }
+    say(&table(results))?;
     if arguments.explain {
         for method in &results.methods {
-            say(&stages_table(&results, method))?;
+            say(&stages_table(results, method))?;
             say(&parts_table(method))?;
         }
     }
-    say(&format!("{} and results.csv are in {}", "results.json", arguments.out.display()))
+    let report = if arguments.no_report { "" } else { ", report.html" };
+    say(&format!("results.json, results.csv, trace.json{report}: in {}", arguments.out.display()))
 }
 
 fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
@@ -50,7 +83,6 @@ fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
     if arguments.no_metrics {
         bail!("--capture needs the untimed pass: leave --no-metrics out");
     }
-    std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
     Ok(Some(CaptureOrder { frame, folder: arguments.out.clone(), library: Capture::load()? }))
 }
 

@@ -2,6 +2,7 @@
 
 mod bench;
 mod info;
+mod report;
 mod scene;
 mod shot;
 mod table;
@@ -17,6 +18,7 @@ pub fn run(cli: Cli) -> Result<()> {
             Some(table) => table::run(&arguments, table),
             None => bench::run(&arguments),
         },
+        Command::Report(arguments) => report::run(&arguments),
         Command::Shot(arguments) => shot::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),

@@ -7,7 +7,7 @@ impl Results {
     /// Reads and checks a file. The error names the file and the field.
     pub fn read_json(path: &Path) -> Result<Self, ResultsError> {
         let text =
-            std::fs::read_to_string(path).map_err(|source| ResultsError::Read { path: path.to_path_buf(), source })?;
+            std::fs::read_to_string(path).map_err(|cause| ResultsError::Read { path: path.to_path_buf(), cause })?;
         parse(&text).map_err(|Fault { field, fault }| ResultsError::Broken { path: path.to_path_buf(), field, fault })
     }
 }
