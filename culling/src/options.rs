@@ -30,6 +30,16 @@ impl Options {
         Options { method, known, set: BTreeMap::new() }
     }
 
+    /// The options that there are.
+    pub fn known(&self) -> &'static [OptionInfo] {
+        self.known
+    }
+
+    /// The method's id.
+    pub fn method(&self) -> &'static str {
+        self.method
+    }
+
     /// Sets one option, after checking its name and value.
     pub fn set(&mut self, name: &str, value: &str) -> Result<()> {
         let Some(info) = self.known.iter().find(|info| info.name == name) else {

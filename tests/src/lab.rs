@@ -1,190 +1,86 @@
-//! A case on a device: methods run through its shots, next to the truth.
+//! The lab of `sightline stress` as tests use it: what it returns as an error fails the test.
 
 use crate::Case;
-use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, World};
-use engine::{FrameReport, Gpu};
-use scenes::{Scene, Shot};
-use shaders::types::DrawCommand;
-use sightline::metrics::{compare, FrameError, FrameImages, Truth};
-use sightline::targets::Targets;
+use culling::{Method, View, VisibleSets};
+use engine::Gpu;
+use scenes::Shot;
+use sightline::metrics::{FrameError, Truth};
+use sightline::stress::lab;
+pub use sightline::stress::lab::{Subject, Take};
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// What laws run: a method of the list with options, or one that a test made.
-#[derive(Clone, Debug)]
-pub struct Subject {
-    /// Its options.
-    pub options: Options,
-    /// Makes it.
-    pub make: fn(&Setup<'_>) -> culling::Result<Box<dyn Method>>,
-}
-
-impl Subject {
-    /// The method of that name, at its defaults.
-    ///
-    /// # Panics
-    /// If there is none.
-    pub fn named(id: &str) -> Self {
-        let entry: &Entry = culling::find(id).unwrap();
-        Subject { options: entry.default_options(), make: entry.make }
-    }
-
-    /// With one option set.
-    ///
-    /// # Panics
-    /// If it has no such option or value.
-    pub fn with(mut self, option: &str, value: &str) -> Self {
-        self.options.set(option, value).unwrap();
-        self
-    }
-
-    /// True if it can leave stages out.
-    pub fn can_skip(&self) -> bool {
-        self.options.all().contains_key("skip")
-    }
-}
-
-/// One frame of a method.
-pub struct Take {
-    /// What it did.
-    pub report: FrameReport,
-    /// What it drew: the pictures. Items are world objects.
-    pub images: FrameImages,
-    /// What it drew: the objects.
-    pub drawn: Drawn,
-    /// Its draw lists, in order, to the bit.
-    pub commands: Vec<DrawCommand>,
-}
-
 /// A scene on the device, with targets.
-pub struct Lab {
-    /// The device.
-    pub gpu: Gpu,
-    /// The scene.
-    pub scene: Scene,
-    /// The scene on the device.
-    pub world: World,
-    /// What is drawn to.
-    pub targets: Targets,
-    /// Width and height in pixels.
-    pub size: [u32; 2],
+pub struct Lab(lab::Lab);
+
+impl Deref for Lab {
+    type Target = lab::Lab;
+
+    fn deref(&self) -> &lab::Lab {
+        &self.0
+    }
+}
+
+impl DerefMut for Lab {
+    fn deref_mut(&mut self) -> &mut lab::Lab {
+        &mut self.0
+    }
+}
+
+/// What the device or its validation layer objects to fails the test.
+#[track_caller]
+fn good<T>(result: anyhow::Result<T>) -> T {
+    result.unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 impl Lab {
     /// Puts a case's scene on the device.
-    ///
-    /// # Panics
-    /// If the device refuses it.
     pub fn new(gpu: &Gpu, case: &Case) -> Self {
-        let world = World::new(gpu, &case.scene).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        let targets = Targets::new(gpu, case.size).unwrap();
-        Lab { gpu: gpu.clone(), scene: case.scene.clone(), world, targets, size: case.size }
+        Lab(good(lab::Lab::new(gpu, case)))
     }
 
     /// Changes the picture's size.
-    ///
-    /// # Panics
-    /// If the device has no room for it.
     pub fn resize(&mut self, size: [u32; 2]) {
-        self.targets = Targets::new(&self.gpu, size).unwrap();
-        self.size = size;
+        good(self.0.resize(size));
     }
 
     /// Moves the scene to a shot's time and looks through it.
-    ///
-    /// # Panics
-    /// If the device fails.
     pub fn look(&mut self, shot: &Shot, frame: usize) -> View {
-        self.world.set_time(&self.scene, shot.seconds).unwrap();
-        View::new(shot, self.size, frame, self.gpu.snap_px())
+        good(self.0.look(shot, frame))
     }
 
     /// The truth of a shot: everything is drawn.
-    ///
-    /// # Panics
-    /// If the device or its validation layer objects.
     pub fn truth(&mut self, shot: &Shot) -> Truth {
-        let view = self.look(shot, 0);
-        let target = self.targets.with_items();
-        let mut f = self.gpu.frame();
-        self.world.update(&mut f);
-        f.clear(&target);
-        self.world.draw_all(&mut f, &view, &target);
-        f.finish().unwrap();
-        Truth::new(self.targets.read().unwrap(), self.world.len()).unwrap()
+        good(self.0.truth(shot))
     }
 
     /// The truth of each shot, and their visible sets.
     pub fn truths(&mut self, shots: &[Shot]) -> (Vec<Truth>, Arc<VisibleSets>) {
-        let truths: Vec<Truth> = shots.iter().map(|shot| self.truth(shot)).collect();
-        let mut sets = VisibleSets::new(self.world.len());
-        truths.iter().for_each(|truth| sets.push_items(&truth.images().items));
-        (truths, Arc::new(sets))
+        good(self.0.truths(shots))
     }
 
     /// Makes a method for this world.
-    ///
-    /// # Panics
-    /// If it cannot be made.
     pub fn make(&self, subject: &Subject, visible: &Arc<VisibleSets>) -> Box<dyn Method> {
-        let visible = Some(visible.clone());
-        let setup = Setup { gpu: &self.gpu, world: &self.world, options: &subject.options, visible };
-        (subject.make)(&setup).unwrap_or_else(|error| panic!("{}: {error}", subject.options.label()))
+        good(self.0.make(subject, visible))
     }
 
     /// Runs one frame with the item buffer on.
-    ///
-    /// # Panics
-    /// If the device or its validation layer objects.
     pub fn take(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize) -> Take {
-        let report = self.run(method, shot, frame, true);
-        let images = self.targets.read().unwrap();
-        self.developed(report, images)
+        good(self.0.take(method, shot, frame))
     }
 
     /// Runs one frame as it is timed, without the item buffer; the items are what an earlier frame left.
-    ///
-    /// # Panics
-    /// If the device or its validation layer objects.
     pub fn take_timed(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize) -> Take {
-        let report = self.run(method, shot, frame, false);
-        let images = self.targets.read().unwrap();
-        self.developed(report, images)
+        good(self.0.take_timed(method, shot, frame))
     }
 
     /// Runs a method, new or not, through all shots.
     pub fn film(&mut self, method: &mut dyn Method, shots: &[Shot]) -> Vec<Take> {
-        shots.iter().enumerate().map(|(frame, shot)| self.take(method, shot, frame)).collect()
-    }
-
-    fn run(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize, items: bool) -> FrameReport {
-        let view = self.look(shot, frame);
-        method.prepare(&self.world, &view).unwrap();
-        let target = if items || method.needs_items(&self.world, &view) {
-            self.targets.with_items()
-        } else {
-            self.targets.timed()
-        };
-        let mut f = self.gpu.frame();
-        method.frame(&mut f, &self.world, &view, &target).unwrap();
-        f.finish().unwrap_or_else(|error| panic!("frame {frame}: {error}"))
-    }
-
-    fn developed(&self, report: FrameReport, images: FrameImages) -> Take {
-        let drawn = drawn_objects(&self.gpu, &self.world, &report).unwrap();
-        let mut commands = Vec::new();
-        for draw in &report.draws {
-            let count = draw.count.map(|count| self.gpu.read_bound::<u32>(&count.into()).unwrap()[0]);
-            let all = self.gpu.read_bound::<DrawCommand>(&draw.commands).unwrap();
-            commands.extend_from_slice(&all[..count.unwrap_or(draw.max_draws) as usize]);
-        }
-        Take { report, images, drawn, commands }
+        good(self.0.film(method, shots))
     }
 }
 
 /// How far a take is from the truth.
-///
-/// # Panics
-/// If the two cannot be compared.
 pub fn error_of(truth: &Truth, take: &Take) -> FrameError {
-    compare(truth, &take.images, &take.drawn.objects).unwrap()
+    good(lab::error_of(truth, take))
 }

@@ -11,14 +11,11 @@ pub mod hazards;
 pub mod lab;
 pub mod laws;
 pub mod occludees;
-pub mod random;
 pub mod sessions;
-pub mod worlds;
 
 pub use device::{gpu, options, Device};
 pub use lab::{Lab, Subject, Take};
-pub use random::Random;
-pub use worlds::Case;
+pub use sightline::stress::{worlds, Case, Random};
 
 /// Fails with every fault on a line of its own.
 ///

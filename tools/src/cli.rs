@@ -1,8 +1,10 @@
 //! The command line.
 
 mod methods;
+mod stress;
 
 pub use methods::{parse_methods, parse_setting};
+pub use stress::{StressArgs, STRESS_HELP};
 
 use crate::session::SessionOptions;
 use crate::tables::TABLES;
@@ -38,6 +40,9 @@ pub enum Command {
     Report(ReportArgs),
     /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
+    /// Runs the numeric catalogue and worlds by chance through every exact method: what is lost, and how near it was
+    #[command(after_help = STRESS_HELP)]
+    Stress(StressArgs),
     /// Lists scenes; shows or exports one with its camera path
     Scene(SceneArgs),
     /// Lists devices, and says what the chosen one has and lacks

@@ -15,6 +15,7 @@ pub mod results;
 pub mod run;
 pub mod session;
 pub mod stats;
+pub mod stress;
 pub mod tables;
 pub mod targets;
 pub mod trace;

@@ -5,7 +5,10 @@ mod info;
 mod report;
 mod scene;
 mod shot;
+mod stress;
 mod table;
+
+pub use stress::all_drills;
 
 use crate::cli::{Cli, Command};
 use anyhow::Result;
@@ -20,6 +23,7 @@ pub fn run(cli: Cli) -> Result<()> {
         },
         Command::Report(arguments) => report::run(&arguments),
         Command::Shot(arguments) => shot::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
     }

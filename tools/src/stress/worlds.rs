@@ -6,7 +6,7 @@ pub mod special;
 pub use chance::chance;
 pub use special::{oblique, special, special_projections};
 
-use crate::Random;
+use crate::stress::Random;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use scenes::{Mesh, Object, Pose, Projection, Scene, Shot, Topology};
 

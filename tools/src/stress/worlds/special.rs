@@ -1,7 +1,7 @@
 //! The catalogue of worlds that are hard in one way each.
 
 use super::{cube, dust, mesh, shot, sized, square, turned, walled, wander, wires, Case, Maker, PERSPECTIVE};
-use crate::Random;
+use crate::stress::Random;
 use glam::{DMat4, DVec3, Vec3};
 use scenes::{Mesh, Projection, Shot, Topology};
 

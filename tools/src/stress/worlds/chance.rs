@@ -1,7 +1,7 @@
 //! Worlds and cameras by chance: what nobody thought of.
 
 use super::{cube, dust, oblique, sized, square, turned, wires, Case, Maker};
-use crate::Random;
+use crate::stress::Random;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use scenes::{Pose, Projection, Shot};
 

@@ -1,0 +1,203 @@
+//! What an object really covers, against the footprint that its box promises: the property on which culling rests.
+
+use crate::stress::Lab;
+use anyhow::Result;
+use culling::frustum::twin::clip_from_bounds;
+use culling::hzb::twin::{footprint_of, Footprint};
+use culling::View;
+use glam::{DVec2, DVec3};
+use scenes::{Mesh, Object, Scene, Shot};
+use shaders::types::{Bounds, CullView, DEPTH_SLACK_PER_PIXEL, ITEM_NONE, OBJECT_WIDE_RASTER};
+
+/// What was seen over many objects.
+#[derive(Clone, Debug)]
+pub struct Covered {
+    /// Objects that own a pixel and do not cross the near plane: those that say something.
+    pub objects: usize,
+    /// Pixels looked at.
+    pub pixels: usize,
+    /// Pixels outside a footprint, or of an object whose footprint is empty.
+    pub outside: Vec<String>,
+    /// Pixels nearer than a footprint's nearest depth.
+    pub too_near: Vec<TooNear>,
+    /// Farthest that a pixel's centre lay outside the rectangle of its object's vertices, pixels.
+    pub worst_outside_px: f64,
+    /// Least that was left of what a rectangle is grown by before a pixel's centre would lie outside, pixels; infinite if nothing
+    /// says anything.
+    pub spare_px: f64,
+    /// Least that was left before a pixel would have been nearer than its footprint says: representable depths.
+    pub spare_depths: Option<i64>,
+    /// Most that a pixel came nearer than its box, in depth ranges of the box times the vertex grid, by height of
+    /// the lowest triangle or length of the shortest line: less than 1/8, 1/4, 1/2, 1, 4 pixels, and higher.
+    pub worst_slack: [f64; 6],
+}
+
+impl Default for Covered {
+    fn default() -> Self {
+        Covered {
+            objects: 0,
+            pixels: 0,
+            outside: Vec::new(),
+            too_near: Vec::new(),
+            worst_outside_px: 0.0,
+            spare_px: f64::INFINITY,
+            spare_depths: None,
+            worst_slack: [0.0; 6],
+        }
+    }
+}
+
+/// A pixel that is nearer than its object's footprint says.
+#[derive(Clone, Debug)]
+pub struct TooNear {
+    /// Height of its lowest triangle, or length of its shortest line, in pixels.
+    pub height_px: f64,
+    /// How much nearer than the box, in depth ranges of the box times the vertex grid.
+    pub slack: f64,
+    /// For people.
+    pub text: String,
+}
+
+/// Draws a shot and holds every pixel against its object's footprint; `shape` may change bounds and view
+/// first, to plant errors.
+pub fn covered(lab: &mut Lab, shot: &Shot, shape: impl Fn(&mut Bounds, &mut CullView)) -> Result<Covered> {
+    let truth = lab.truth(shot)?;
+    let view = lab.look(shot, 0)?;
+    let bounds = lab.world.read_bounds()?;
+    let mut seen = Covered::default();
+    let mut prints = std::collections::HashMap::new();
+    let images = truth.images();
+    for (pixel, (item, depth)) in images.items.iter().zip(&images.depth).enumerate() {
+        if *item == ITEM_NONE {
+            continue;
+        }
+        let print = prints.entry(*item).or_insert_with(|| {
+            let object = &lab.scene.objects[lab.world.scene_object(*item as usize)];
+            Print::new(bounds[*item as usize], &view, &lab.scene, object, &shape)
+        });
+        let at = [pixel as u32 % images.width, pixel as u32 / images.width];
+        seen.pixel(print, at, *depth, lab.gpu.snap_px());
+    }
+    seen.objects = prints.values().filter(|print| !print.promised.crosses_near).count();
+    Ok(seen)
+}
+
+/// An object's footprint with what it is measured by.
+struct Print {
+    name: String,
+    promised: Footprint,
+    /// Nearest depth of the box alone, without the slack for the vertex grid, and the slack of one grid step.
+    bare_nearest: f32,
+    range: f32,
+    low: DVec2,
+    high: DVec2,
+    height_px: f64,
+    /// What the rectangle is grown by, pixels.
+    grow_px: f64,
+}
+
+impl Print {
+    fn new(
+        mut bound: Bounds,
+        view: &View,
+        scene: &Scene,
+        object: &Object,
+        shape: &impl Fn(&mut Bounds, &mut CullView),
+    ) -> Self {
+        let mut cull = view.cull();
+        shape(&mut bound, &mut cull);
+        let clip = clip_from_bounds(&bound, &cull);
+        let promised = footprint_of(&clip, &cull, bound.flags);
+        let bare_flags = bound.flags & !OBJECT_WIDE_RASTER;
+        let unsnapped = footprint_of(&clip, &CullView { snap_px: 0.0, ..cull }, bare_flags);
+        // The slack is linear in the grid, unless it was cut off at the near plane: a coarse grid tells the range.
+        let coarser = footprint_of(&clip, &CullView { snap_px: 1e-3, ..cull }, bare_flags);
+        let range = (coarser.nearest - unsnapped.nearest) / (DEPTH_SLACK_PER_PIXEL * 1e-3);
+        let corners = projected(view, scene, object);
+        let low = corners.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = corners.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let Mesh { indices, topology, .. } = &scene.meshes[object.mesh as usize];
+        let vertices = [3, 2, 1][*topology as usize];
+        let height_px = indices.chunks(vertices).map(|face| height(face, &corners)).fold(f64::INFINITY, f64::min);
+        let wide = bound.flags & OBJECT_WIDE_RASTER != 0;
+        let grow_px = f64::from(cull.snap_px) + if wide { 1.0 } else { 0.0 };
+        Print {
+            name: object.name.clone(),
+            promised,
+            bare_nearest: unsnapped.nearest,
+            range,
+            low,
+            high,
+            height_px,
+            grow_px,
+        }
+    }
+}
+
+/// An object's vertices in pixels, in f64.
+fn projected(view: &View, scene: &Scene, object: &Object) -> Vec<DVec2> {
+    let size = DVec2::new(f64::from(view.size[0]), f64::from(view.size[1]));
+    let vertex = |position: &glam::Vec3| {
+        let relative: DVec3 = object.world_from_object.transform_point3(position.as_dvec3()) - view.pose.position;
+        let clip = view.clip_from_relative() * relative.extend(1.0);
+        (DVec2::new(clip.x, clip.y) / clip.w * 0.5 + 0.5) * size
+    };
+    scene.meshes[object.mesh as usize].positions.iter().map(vertex).collect()
+}
+
+/// The shortest height of a triangle, the length of a line; of a point, 0.
+fn height(face: &[u32], corners: &[DVec2]) -> f64 {
+    let [a, b, c] = match face {
+        [a, b, c] => [a, b, c].map(|index| corners[*index as usize]),
+        [a, b] => return (corners[*a as usize] - corners[*b as usize]).length(),
+        _ => return 0.0,
+    };
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    (b - a).perp_dot(c - a).abs() / longest.max(f64::MIN_POSITIVE)
+}
+
+impl Covered {
+    fn pixel(&mut self, print: &Print, at: [u32; 2], depth: f32, snap_px: f32) {
+        let promised = &print.promised;
+        if promised.crosses_near {
+            return;
+        }
+        self.pixels += 1;
+        let inside = (0..2).all(|axis| (promised.first[axis]..=promised.last[axis]).contains(&at[axis]));
+        if promised.empty || !inside {
+            self.outside.push(format!("{}: pixel {at:?} is outside its footprint {promised:?}", print.name));
+        }
+        let centre = DVec2::new(f64::from(at[0]), f64::from(at[1])) + 0.5;
+        let away = (print.low - centre).max(centre - print.high);
+        self.worst_outside_px = self.worst_outside_px.max(away.x).max(away.y);
+        self.spare_px = self.spare_px.min(print.grow_px - away.max_element());
+        let spare = i64::from(promised.nearest.to_bits()) - i64::from(depth.to_bits());
+        self.spare_depths = Some(self.spare_depths.map_or(spare, |least| least.min(spare)));
+        let slack = f64::from(depth - print.bare_nearest) / f64::from(print.range * snap_px).max(1e-30);
+        let bin = [0.125, 0.25, 0.5, 1.0, 4.0].iter().position(|height| print.height_px < *height).unwrap_or(5);
+        if print.range > 1e-5 * print.bare_nearest {
+            self.worst_slack[bin] = self.worst_slack[bin].max(slack);
+        }
+        if depth > promised.nearest {
+            let text = format!(
+                "{}: depth {depth:e} at {at:?} is nearer than {:e}; primitive {:.4} px high, slack {slack:.2}",
+                print.name, promised.nearest, print.height_px
+            );
+            self.too_near.push(TooNear { height_px: print.height_px, slack, text });
+        }
+    }
+
+    /// Adds what was seen elsewhere.
+    pub fn join(&mut self, other: Covered) {
+        self.objects += other.objects;
+        self.pixels += other.pixels;
+        self.outside.extend(other.outside);
+        self.too_near.extend(other.too_near);
+        self.worst_outside_px = self.worst_outside_px.max(other.worst_outside_px);
+        self.spare_px = self.spare_px.min(other.spare_px);
+        self.spare_depths = self.spare_depths.into_iter().chain(other.spare_depths).min();
+        for (mine, theirs) in self.worst_slack.iter_mut().zip(other.worst_slack) {
+            *mine = mine.max(theirs);
+        }
+    }
+}
