@@ -37,6 +37,17 @@ impl Drill {
     }
 }
 
+impl Drill {
+    /// True if neither the camera, the time nor the size has changed since the frame before, and nothing was forgotten.
+    pub fn stands_still(&self, frame: usize) -> bool {
+        let shots = &self.case.shots;
+        frame > 0
+            && shots[frame - 1] == shots[frame]
+            && self.size(frame - 1) == self.size(frame)
+            && !self.forgets.contains(&frame)
+    }
+}
+
 impl From<Case> for Drill {
     fn from(case: Case) -> Self {
         Drill { case, sizes: Vec::new(), forgets: Vec::new() }

@@ -2,12 +2,13 @@
 
 use super::catalogue::{Drill, DrillId, CHANCE, FAMILIES};
 use super::footprints::{covered, Covered};
-use super::lab::{error_of, Lab};
+use super::lab::{error_of, Lab, Take};
 use super::{settings, Random, Subject};
 use crate::metrics::{FrameError, Truth};
 use anyhow::Result;
 use culling::VisibleSets;
 use engine::Gpu;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// What to run.
@@ -124,8 +125,11 @@ fn one_drill(gpu: &Gpu, plan: &Plan, id: DrillId, outcome: &mut Outcome) -> Resu
     measure(&mut lab, &drill, &truths, row, &mut outcome.broken_bounds)?;
     for (index, method) in outcome.methods.iter_mut().enumerate() {
         let subject = plan.subject(index, id);
-        let (tally, faults) = match play(&mut lab, &subject, &drill, &truths, &sets) {
-            Ok(errors) => (tally_of(&errors), faults_of(&errors)),
+        let mut play = || play(&mut lab, &subject, &drill, &truths, &sets);
+        // Every second drill is run again: what was drawn must be drawn again, to the bit.
+        let twice = play().and_then(|once| Ok((if id.seed % 2 == 0 { Some(play()?) } else { None }, once)));
+        let (tally, faults) = match twice {
+            Ok((again, once)) => (tally_of(&once), faults_of(&drill, &once, again.as_deref())),
             Err(error) => (Tally::default(), vec![format!("{error:#}")]),
         };
         row.tally.add(&tally);
@@ -157,29 +161,55 @@ fn fit(lab: &mut Lab, size: [u32; 2]) -> Result<()> {
     lab.resize(size)
 }
 
-/// A method's errors in each frame of a drill.
+/// One frame of a method in a drill.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Played {
+    pub(super) error: FrameError,
+    /// Of its pictures.
+    pictures: u64,
+    /// Of its draw lists.
+    lists: u64,
+}
+
+fn hash_of(add: impl FnOnce(&mut DefaultHasher)) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    add(&mut hasher);
+    hasher.finish()
+}
+
+fn played(truth: &Truth, take: &Take) -> Result<Played> {
+    let images = &take.images;
+    let pictures = hash_of(|hasher| {
+        (&images.colour, &images.items).hash(hasher);
+        images.depth.iter().for_each(|depth| depth.to_bits().hash(hasher));
+    });
+    let lists = hash_of(|hasher| bytemuck::cast_slice::<_, u32>(&take.commands).hash(hasher));
+    Ok(Played { error: error_of(truth, take)?, pictures, lists })
+}
+
+/// What a method does in each frame of a drill.
 pub(super) fn play(
     lab: &mut Lab,
     subject: &Subject,
     drill: &Drill,
     truths: &[Truth],
     sets: &Arc<VisibleSets>,
-) -> Result<Vec<FrameError>> {
+) -> Result<Vec<Played>> {
     let mut method = lab.make(subject, sets)?;
-    let mut errors = Vec::new();
+    let mut frames = Vec::new();
     for (frame, shot) in drill.case.shots.iter().enumerate() {
         fit(lab, drill.size(frame))?;
         if drill.forgets.contains(&frame) {
             method.forget()?;
         }
         let take = lab.take(&mut *method, shot, frame)?;
-        errors.push(error_of(&truths[frame], &take)?);
+        frames.push(played(&truths[frame], &take)?);
     }
-    Ok(errors)
+    Ok(frames)
 }
 
-fn tally_of(errors: &[FrameError]) -> Tally {
-    let sum = |value: fn(&FrameError) -> usize| errors.iter().map(|error| value(error) as u64).sum();
+fn tally_of(frames: &[Played]) -> Tally {
+    let sum = |value: fn(&FrameError) -> usize| frames.iter().map(|frame| value(&frame.error) as u64).sum();
     Tally {
         runs: 1,
         object_frames: sum(|error| error.objects),
@@ -199,15 +229,33 @@ impl Tally {
     }
 }
 
-/// What an exact method may not do, frame by frame.
-pub(super) fn faults_of(errors: &[FrameError]) -> Vec<String> {
-    let wrong = |error: &FrameError| error.false_negatives + error.differing_pixels + error.wrong_colour_pixels > 0;
-    let told = errors.iter().enumerate().filter(|(_, error)| wrong(error));
-    told.map(|(frame, error)| {
-        let FrameError { false_negatives, differing_pixels, wrong_colour_pixels, .. } = error;
-        format!("frame {frame}: {false_negatives} lost, {differing_pixels} pixels differ, {wrong_colour_pixels} of wrong colour")
+/// What an exact method may not do, frame by frame: lose objects, change pixels, show another picture while nothing changes, or
+/// draw another list when it is run `again`.
+pub(super) fn faults_of(drill: &Drill, frames: &[Played], again: Option<&[Played]>) -> Vec<String> {
+    let mut faults = Vec::new();
+    for (frame, played) in frames.iter().enumerate() {
+        faults.extend(wrong(&played.error).map(|what| format!("frame {frame}: {what}")));
+        // The first frame knows nothing yet, which may decide ties; the second may be the first to know.
+        if frame >= 2
+            && drill.stands_still(frame - 1)
+            && drill.stands_still(frame)
+            && frames[frame - 1].pictures != played.pictures
+        {
+            faults.push(format!("frame {frame}: nothing changed, but the picture did"));
+        }
+        if again.is_some_and(|again| (again[frame].pictures, again[frame].lists) != (played.pictures, played.lists)) {
+            faults.push(format!("frame {frame}: another run draws another picture or list"));
+        }
+    }
+    faults
+}
+
+/// What an exact method may not do in a frame.
+pub(super) fn wrong(error: &FrameError) -> Option<String> {
+    let FrameError { false_negatives, differing_pixels, wrong_colour_pixels, .. } = error;
+    (false_negatives + differing_pixels + wrong_colour_pixels > 0).then(|| {
+        format!("{false_negatives} lost, {differing_pixels} pixels differ, {wrong_colour_pixels} of wrong colour")
     })
-    .collect()
 }
 
 /// What bounds have to spare, in the first and in the middle frame.

@@ -2,7 +2,7 @@
 
 use super::catalogue::Drill;
 use super::lab::{error_of, Lab};
-use super::run::{faults_of, truths};
+use super::run::{truths, wrong};
 use super::Subject;
 use crate::files::write_atomically;
 use crate::metrics::{FrameImages, Truth};
@@ -80,7 +80,7 @@ fn first_wrong_frame(gpu: &Gpu, subject: &Subject, drill: &Drill) -> Result<Opti
             method.forget()?;
         }
         let take = lab.take(&mut *method, shot, frame)?;
-        if !faults_of(&[error_of(&truths[frame], &take)?]).is_empty() {
+        if wrong(&error_of(&truths[frame], &take)?).is_some() {
             return Ok(Some((frame, truths[frame].images().clone(), take.images)));
         }
     }

@@ -50,7 +50,7 @@ pub fn sunk(random: &mut Random, bodies: usize) -> Drill {
     for body in 0..bodies {
         let at = random.vector() * DVec3::new(4.0, 2.5, 2.0);
         let size = random.range(0.2, 0.9);
-        let out = size * [0.5, 1e-3, 1e-4, 1e-5][body % 4];
+        let out = size * [0.5, 1e-3, 1e-4, 1e-5, 1e-6][body % 5];
         let depth = 2.0 + out - 0.5 * size;
         let side = if at.z > 0.0 { depth } else { -depth };
         maker.place(cube, sized(DVec3::new(at.x, at.y, side), DVec3::splat(size)));
@@ -88,7 +88,9 @@ pub fn ties(random: &mut Random, bodies: usize) -> Drill {
             maker.place(kinds[random.below(2)], sized(at, size));
         }
     }
-    filmed(random, maker).into()
+    let case = filmed(random, maker);
+    let [home, away] = [case.shots[0], case.shots[4]];
+    case.filmed(vec![home, home, home, home, away, away, away, home]).into()
 }
 
 /// Mirrored bodies, needles, and bodies shrunk to a sheet, a line or a point.
