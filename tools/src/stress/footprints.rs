@@ -5,9 +5,12 @@ use anyhow::Result;
 use culling::frustum::twin::clip_from_bounds;
 use culling::hzb::twin::{footprint_of, Footprint};
 use culling::View;
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use scenes::{Mesh, Object, Scene, Shot};
 use shaders::types::{Bounds, CullView, DEPTH_SLACK_PER_PIXEL, ITEM_NONE, OBJECT_WIDE_RASTER};
+
+/// Primitives lower than this are outside the raster conditions that depths are promised for (`include/footprint.glsl`).
+pub const LEAST_HEIGHT_PX: f64 = 0.125;
 
 /// What was seen over many objects.
 #[derive(Clone, Debug)]
@@ -25,7 +28,8 @@ pub struct Covered {
     /// Least that was left of what a rectangle is grown by before a pixel's centre would lie outside, pixels; infinite if nothing
     /// says anything.
     pub spare_px: f64,
-    /// Least that was left before a pixel would have been nearer than its footprint says: representable depths.
+    /// Least that was left before a pixel would have been nearer than its footprint says, of primitives at
+    /// least [`LEAST_HEIGHT_PX`] high: representable depths.
     pub spare_depths: Option<i64>,
     /// Most that a pixel came nearer than its box, in depth ranges of the box times the vertex grid, by height of
     /// the lowest triangle or length of the shortest line: less than 1/8, 1/4, 1/2, 1, 4 pixels, and higher.
@@ -65,6 +69,9 @@ pub fn covered(lab: &mut Lab, shot: &Shot, shape: impl Fn(&mut Bounds, &mut Cull
     let view = lab.look(shot, 0)?;
     let bounds = lab.world.read_bounds()?;
     let mut seen = Covered::default();
+    let mut places = Vec::new();
+    lab.scene.motion.transforms_at(shot.seconds, &mut places);
+    let moved: std::collections::HashMap<u32, DAffine3> = places.into_iter().collect();
     let mut prints = std::collections::HashMap::new();
     let images = truth.images();
     for (pixel, (item, depth)) in images.items.iter().zip(&images.depth).enumerate() {
@@ -72,8 +79,10 @@ pub fn covered(lab: &mut Lab, shot: &Shot, shape: impl Fn(&mut Bounds, &mut Cull
             continue;
         }
         let print = prints.entry(*item).or_insert_with(|| {
-            let object = &lab.scene.objects[lab.world.scene_object(*item as usize)];
-            Print::new(bounds[*item as usize], &view, &lab.scene, object, &shape)
+            let index = lab.world.scene_object(*item as usize);
+            let mut object = lab.scene.objects[index].clone();
+            object.world_from_object = *moved.get(&(index as u32)).unwrap_or(&object.world_from_object);
+            Print::new(bounds[*item as usize], &view, &lab.scene, &object, &shape)
         });
         let at = [pixel as u32 % images.width, pixel as u32 / images.width];
         seen.pixel(print, at, *depth, lab.gpu.snap_px());
@@ -171,8 +180,10 @@ impl Covered {
         let away = (print.low - centre).max(centre - print.high);
         self.worst_outside_px = self.worst_outside_px.max(away.x).max(away.y);
         self.spare_px = self.spare_px.min(print.grow_px - away.max_element());
-        let spare = i64::from(promised.nearest.to_bits()) - i64::from(depth.to_bits());
-        self.spare_depths = Some(self.spare_depths.map_or(spare, |least| least.min(spare)));
+        if print.height_px >= LEAST_HEIGHT_PX {
+            let spare = i64::from(promised.nearest.to_bits()) - i64::from(depth.to_bits());
+            self.spare_depths = Some(self.spare_depths.map_or(spare, |least| least.min(spare)));
+        }
         let slack = f64::from(depth - print.bare_nearest) / f64::from(print.range * snap_px).max(1e-30);
         let bin = [0.125, 0.25, 0.5, 1.0, 4.0].iter().position(|height| print.height_px < *height).unwrap_or(5);
         if print.range > 1e-5 * print.bare_nearest {

@@ -1,7 +1,7 @@
 //! Runs methods through drills, and says what they lost.
 
 use super::catalogue::{Drill, DrillId, CHANCE, FAMILIES};
-use super::footprints::{covered, Covered};
+use super::footprints::{covered, Covered, LEAST_HEIGHT_PX};
 use super::lab::{error_of, Lab, Take};
 use super::{settings, Random, Subject};
 use crate::metrics::{FrameError, Truth};
@@ -272,7 +272,8 @@ fn measure(
         let seen = covered(lab, &shots[frame], |_, _| ())?;
         let name = &drill.case.name;
         broken.extend(seen.outside.iter().map(|text| format!("{name}, frame {frame}: {text}")));
-        broken.extend(seen.too_near.iter().map(|near| format!("{name}, frame {frame}: {}", near.text)));
+        let promised = seen.too_near.iter().filter(|near| near.height_px >= LEAST_HEIGHT_PX);
+        broken.extend(promised.map(|near| format!("{name}, frame {frame}: {}", near.text)));
         row.margin.join(seen);
         let mut pixels = std::collections::HashMap::<u32, u64>::new();
         let images = truths[frame].images();
