@@ -1,6 +1,7 @@
 //! What each command does, from arguments to output.
 
 mod bench;
+mod compare;
 mod info;
 mod report;
 mod scene;
@@ -13,10 +14,27 @@ pub use stress::all_drills;
 use crate::cli::{Cli, Command};
 use anyhow::Result;
 use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+/// Runs the command that was typed, and says by its exit code what became of it: 0 good, 1 an error, or a gate of `compare` that was
+/// true; an error of `compare` is 2, so that CI can tell it from a gate.
+pub fn exit_code(cli: Cli) -> ExitCode {
+    let compares = matches!(cli.command, Command::Compare(_));
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: the chain of causes, outermost first.
+            eprintln!("sightline: {error:#}");
+            let is_gate = error.is::<compare::GatesTrue>();
+            ExitCode::from(if compares && !is_gate { 2 } else { 1 })
+        }
+    }
+}
 
 /// Runs the command that was typed.
 pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => match &arguments.table {
             Some(table) => table::run(&arguments, table),
             None => bench::run(&arguments),
