@@ -7,6 +7,7 @@ mod report;
 mod scene;
 mod shot;
 mod stress;
+mod sweep;
 mod table;
 
 pub use stress::all_drills;
@@ -37,6 +38,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => match &arguments.table {
             Some(table) => table::run(&arguments, table),
+            None if !arguments.sweeps.sweep.is_empty() => sweep::run(&arguments),
             None => bench::run(&arguments),
         },
         Command::Report(arguments) => report::run(&arguments),
