@@ -5,8 +5,10 @@ use crate::results::{Method, Results};
 use anyhow::{bail, Context, Result};
 use serde_json::Value;
 
+type Holds = fn(f64, f64) -> bool;
+
 /// How two numbers may stand to each other.
-const OPERATORS: [(&str, fn(f64, f64) -> bool); 5] =
+const OPERATORS: [(&str, Holds); 5] =
     [(">=", |a, b| a >= b), ("<=", |a, b| a <= b), ("==", |a, b| a == b), (">", |a, b| a > b), ("<", |a, b| a < b)];
 
 /// Fields that only a comparison has.
@@ -22,7 +24,7 @@ pub struct Gate {
     /// A label, a method's id for all its labels, or `any`.
     method: String,
     field: String,
-    operator: fn(f64, f64) -> bool,
+    operator: Holds,
     bound: f64,
 }
 
@@ -160,11 +162,13 @@ mod tests {
         Gate::parse(gate)?.broken(Some(&a), &b, Some(&comparison))
     }
 
+    type Change = fn(&mut Method);
+
     #[test]
     fn gates_fire_and_do_not_fire() {
         let id = example().methods[0].method.clone();
         let gate = |text: &str| text.replace("ID", &id);
-        let fires: [(&str, fn(&mut Method)); 6] = [
+        let fires: [(&str, Change); 6] = [
             ("ID.false_negatives>7000", |method| method.false_negatives = 7001),
             ("any.psnr_worst_db<9", |method| method.psnr_worst_db = Some(8.5)),
             ("ID.ratio>1.4", |method| method.frames.frame_ms.iter_mut().for_each(|ms| *ms *= 1.5)),
@@ -177,7 +181,7 @@ mod tests {
             assert!(!broken(&gate(text), change).unwrap().is_empty(), "{text}");
         }
         assert_eq!(broken("any.psnr_worst_db<9", |method| method.psnr_worst_db = None).unwrap(), []);
-        assert_eq!(broken("any.psnr_worst_db_delta!=0", |_| ()).is_err(), true);
+        assert!(broken("any.psnr_worst_db_delta!=0", |_| ()).is_err());
     }
 
     #[test]

@@ -144,10 +144,12 @@ mod tests {
         assert_eq!(compare(&b, &a, false).unwrap().rows[0].verdict, "slower");
     }
 
+    type Change = fn(&mut Results);
+
     #[test]
     fn runs_that_differ_are_refused_by_name() {
         let a = example();
-        let changes: [(&str, fn(&mut Results)); 6] = [
+        let changes: [(&str, Change); 6] = [
             ("scene", |b| b.scene.name = "another".into()),
             ("size", |b| b.size = [1, 2]),
             ("frames", |b| b.frames += 1),
