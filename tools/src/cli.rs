@@ -1,8 +1,10 @@
 //! The command line.
 
+mod compare;
 mod methods;
 mod stress;
 
+pub use compare::{CompareArgs, COMPARE_HELP};
 pub use methods::{parse_methods, parse_setting};
 pub use stress::{StressArgs, STRESS_HELP};
 
@@ -38,6 +40,9 @@ pub enum Command {
     Bench(BenchArgs),
     /// Makes a report of a results.json: plots and tables, without the pictures that only `bench` has
     Report(ReportArgs),
+    /// Compares two results.json: is B faster than A, what became of the errors; and gates for CI (--fail-if)
+    #[command(after_help = COMPARE_HELP)]
+    Compare(CompareArgs),
     /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
     /// Runs the numeric catalogue and worlds by chance through every exact method: what is lost, and how near it was

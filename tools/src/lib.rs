@@ -4,6 +4,7 @@ pub mod bench;
 pub mod boxes_view;
 pub mod cli;
 pub mod commands;
+pub mod compare;
 pub mod files;
 mod grid;
 mod lines;

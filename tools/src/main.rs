@@ -13,12 +13,5 @@ fn main() -> ExitCode {
         .without_time()
         .with_target(false)
         .init();
-    match sightline::commands::run(sightline::cli::Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // One line: the chain of causes, outermost first.
-            eprintln!("sightline: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    sightline::commands::run(sightline::cli::Cli::parse())
 }

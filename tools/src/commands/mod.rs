@@ -1,6 +1,7 @@
 //! What each command does, from arguments to output.
 
 mod bench;
+mod compare;
 mod info;
 mod report;
 mod scene;
@@ -13,10 +14,20 @@ pub use stress::all_drills;
 use crate::cli::{Cli, Command};
 use anyhow::Result;
 use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
 
-/// Runs the command that was typed.
-pub fn run(cli: Cli) -> Result<()> {
+/// Runs the command that was typed. An error is told in one line: the chain of causes, outermost first.
+pub fn run(cli: Cli) -> ExitCode {
+    let error_code = if matches!(cli.command, Command::Compare(_)) { compare::ERROR } else { 1 };
+    run_command(cli).unwrap_or_else(|error| {
+        eprintln!("sightline: {error:#}");
+        ExitCode::from(error_code)
+    })
+}
+
+fn run_command(cli: Cli) -> Result<ExitCode> {
     match cli.command {
+        Command::Compare(arguments) => return compare::run(&arguments),
         Command::Bench(arguments) => match &arguments.table {
             Some(table) => table::run(&arguments, table),
             None => bench::run(&arguments),
@@ -26,7 +37,8 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
-    }
+    }?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.

@@ -1,0 +1,55 @@
+//! `sightline compare`.
+
+use super::say;
+use crate::cli::CompareArgs;
+use crate::compare::{compare, gates_text, run_lines, text, Comparison, Outcome};
+use crate::results::Results;
+use anyhow::{bail, Result};
+use serde::Serialize;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The exit code of a failed gate.
+const GATE_FAILED: u8 = 1;
+
+/// The exit code of an error, so that a script can tell it from a failed gate. Faulty arguments end with it too.
+pub const ERROR: u8 = 2;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    a: Option<&'a Path>,
+    b: &'a Path,
+    comparison: Option<Comparison>,
+    gates: Vec<Outcome>,
+}
+
+/// Compares, looks at the gates, and prints both. The exit code says whether a gate failed.
+pub fn run(arguments: &CompareArgs) -> Result<ExitCode> {
+    let (path_a, path_b) = match arguments.files.as_slice() {
+        [a, b] => (Some(a.as_path()), b.as_path()),
+        [b] if arguments.fail_if.is_empty() => {
+            bail!("{}: one file has nothing to be compared with; name a second, or a gate (--fail-if)", b.display())
+        }
+        [b] => (None, b.as_path()),
+        _ => bail!("name one file or two"),
+    };
+    let a = path_a.map(Results::read_json).transpose()?;
+    let b = Results::read_json(path_b)?;
+    let comparison = a.as_ref().map(|a| compare(a, &b, arguments.options())).transpose()?;
+    let check = arguments.fail_if.iter().map(|gate| gate.check(a.as_ref(), &b, comparison.as_ref()));
+    let gates = check.collect::<Result<Vec<_>>>()?;
+    let failed = gates.iter().any(|gate| gate.failed);
+    if arguments.json {
+        say(&serde_json::to_string_pretty(&Report { a: path_a, b: path_b, comparison, gates })?)?;
+    } else {
+        for (name, path, results) in [("A", path_a, a.as_ref()), ("B", Some(path_b), Some(&b))] {
+            if let (Some(path), Some(results)) = (path, results) {
+                say(&run_lines(name, path, results))?;
+            }
+        }
+        let compared = comparison.map_or(String::new(), |comparison| format!("{}\n", text(&comparison, &b)));
+        say(format!("{compared}{}", gates_text(&gates)).trim_end())?;
+    }
+    Ok(if failed { ExitCode::from(GATE_FAILED) } else { ExitCode::SUCCESS })
+}
