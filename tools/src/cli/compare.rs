@@ -5,20 +5,24 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// What `--help` says below the options.
-pub const COMPARE_HELP: &str = "A is the run before a change, B the one after it. B/A is the ratio of their median frame times. Its 95 % interval comes\n\
-    from resampling frames, in pairs; `faster` and `slower` need the whole interval on one side of 1, and 6 frames at least.\n\
-    What held during one whole run, such as another load of the machine, is not in the interval: where that can be,\n\
-    run both again. Where nothing changed, one row in 20 still shows a difference.\n\n\
-    A gate is a sentence that must not be true: METHOD.FIELD OP NUMBER, with OP one of > >= < <= == !=.\n  \
+pub const COMPARE_HELP: &str = "A is the run before a change, B the one after it. B/A is the ratio of their median frame times.\n\
+    Its 95 % interval comes from resampling frames, in pairs. `faster` and `slower` need the whole\n\
+    interval on one side of 1, and at least 6 frames. What held during one whole run, such as another\n\
+    load of the machine, is in the ratio, but not in the interval: where that can be, run both again.\n\
+    Even on a quiet machine, one row in 20 shows a difference that is none.\n\n\
+    A gate is a sentence that must not be true: METHOD.FIELD OP NUMBER.\n  \
     METHOD  a label of B, a method's id (all its labels), or any\n  \
-    FIELD   a number of B's row in results.json (false_negatives, psnr_worst_db, frame_ms.median, stages.NAME.median_ms, ...;\n          \
-    a wrong name lists them), the same with _delta (B less A), or ratio, ratio_low, ratio_high (B/A and its interval)\n\
-    Pictures identical to the truth have an infinite PSNR. A gate on what was not measured is an error, not a pass.\n\n\
+    FIELD   a number of the method's row in B, by its name in results.json (false_negatives,\n          \
+    psnr_worst_db, frame_ms.median, stages.NAME.median_ms; a wrong name lists all), the same\n          \
+    with _delta (B less A), or B/A: ratio, and the ends of its interval: ratio_low, ratio_high\n  \
+    OP      > >= < <= == !=\n\
+    Pictures identical to the truth have an infinite PSNR. A gate on what was not measured is an\n\
+    error, not a pass.\n\n\
     Exit code: 0 no gate failed, 1 a gate failed, 2 an error.\n\n\
     Examples:\n  \
     sightline compare before/results.json after/results.json --stages\n  \
-    sightline compare before/results.json after/results.json --fail-if 'any.ratio_low>1.05' --fail-if 'any.drawn_mean_delta>0'\n  \
-    sightline compare out/results.json --fail-if 'eovc.false_negatives>0' --fail-if 'any.psnr_worst_db<49'";
+    sightline compare before/results.json after/results.json --fail-if 'any.ratio_low>1.05'\n  \
+    sightline compare out/results.json --fail-if 'eovc.false_negatives>0' --fail-if 'any.ssim_mean<1'";
 
 /// `sightline compare`.
 #[derive(Args, Clone, Debug)]

@@ -1,6 +1,6 @@
 //! A comparison on the terminal, 120 columns wide.
 
-use super::{Change, Comparison, Outcome, Pair, Times, FEWEST_FRAMES};
+use super::{Change, Comparison, Outcome, Pair, Times, Verdict, FEWEST_FRAMES};
 use crate::grid::{clipped, milliseconds, Grid};
 use crate::results::{decibels, error, heading, percent, quantity, Results};
 use std::path::Path;
@@ -95,7 +95,18 @@ fn sureness(comparison: &Comparison, b: &Results) -> Vec<String> {
         let few = format!("{frames} frames are too few to show a difference at 95 %: run {FEWEST_FRAMES} or more");
         lines.push(few);
     }
+    if let Some(verdict) = common_verdict(comparison) {
+        let verdict = verdict.words();
+        lines.push(format!("every method is {verdict}: that may be the machine and not the program; run both again"));
+    }
     lines
+}
+
+/// What all of several methods are, if it is not `no difference shown`.
+fn common_verdict(comparison: &Comparison) -> Option<Verdict> {
+    let mut verdicts = comparison.methods.iter().map(|pair| pair.frame.ratio.map(|ratio| ratio.verdict));
+    let first = verdicts.next().flatten().filter(|verdict| *verdict != Verdict::NoDifferenceShown)?;
+    (comparison.methods.len() > 1 && verdicts.all(|verdict| verdict == Some(first))).then_some(first)
 }
 
 fn errors_table(comparison: &Comparison) -> Vec<String> {

@@ -70,6 +70,21 @@ fn a_run_shows_no_difference_to_itself_and_a_slower_stage_is_found() {
     assert_eq!(slower.methods[1].frame.ratio.unwrap().verdict, Verdict::NoDifferenceShown);
 }
 
+/// A busy machine slows all methods, a change of one method only that one.
+#[test]
+fn where_all_methods_are_slower_the_machine_is_named() {
+    let slow = |b: &mut Results, methods: usize| {
+        b.methods[..methods].iter_mut().flat_map(|method| &mut method.frames.frame_ms).for_each(|ms| *ms *= 2.0);
+    };
+    let warns = |methods: usize| text(&compared(|b| slow(b, methods)), &run()).contains("every method is slower");
+    assert_eq!([0, 1, 2, 3].map(warns), [false, false, false, true]);
+    // One method alone is every method, but says nothing of the machine.
+    let (a, mut b) = (run(), run());
+    slow(&mut b, 1);
+    b.methods.truncate(1);
+    assert!(!text(&compare(&a, &b, PLAIN).unwrap(), &b).contains("every method"));
+}
+
 #[test]
 fn a_stage_counts_only_the_frames_in_which_it_ran() {
     // Half of its frames are skipped: as zeros they would make its median one of nothing and something.
