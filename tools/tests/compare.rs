@@ -158,7 +158,8 @@ fn json_holds_the_comparison_and_the_gates() {
         let (code, out, _) = compare(files, &[&["--json"], more].concat());
         (code, serde_json::from_str::<serde_json::Value>(&out).unwrap())
     };
-    let (code, both) = json(&[&a, &b], &["--fail-if", "hzb.ratio>1.1", "--stages", "--seed", "5", "--resamples", "100"]);
+    let (code, both) =
+        json(&[&a, &b], &["--fail-if", "hzb.ratio>1.1", "--stages", "--seed", "5", "--resamples", "100"]);
     assert_eq!((code, &both["gates"][0]["failed"]), (1, &true.into()));
     assert_eq!(both["gates"][0]["fails"], serde_json::json!([{"label": "hzb", "figure": 2.0}]));
     let comparison = &both["comparison"];

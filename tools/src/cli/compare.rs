@@ -5,7 +5,8 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// What `--help` says below the options.
-pub const COMPARE_HELP: &str = "A is the run before a change, B the one after it. B/A is the ratio of their median frame times.\n\
+pub const COMPARE_HELP: &str =
+    "A is the run before a change, B the one after it. B/A is the ratio of their median frame times.\n\
     Its 95 % interval comes from resampling frames, in pairs. `faster` and `slower` need the whole\n\
     interval on one side of 1, and at least 6 frames. What held during one whole run, such as another\n\
     load of the machine, is in the ratio, but not in the interval: where that can be, run both again.\n\

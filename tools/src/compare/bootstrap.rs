@@ -196,7 +196,10 @@ mod tests {
         // Half of A below a tick of the clock: an upper end, if an infinite one, and never a NaN.
         let (a, b) = ([0.0, 0.0, 0.0, 2.0, 2.0, 2.0], [0.0, 0.0, 0.0, 2.0, 2.0, 3.0]);
         let rare = of(&a, &b, false);
-        assert!(rare.low >= 0.0 && rare.high == f64::INFINITY && rare.verdict == Verdict::NoDifferenceShown, "{rare:?}");
+        assert!(
+            rare.low >= 0.0 && rare.high == f64::INFINITY && rare.verdict == Verdict::NoDifferenceShown,
+            "{rare:?}"
+        );
     }
 
     proptest! {

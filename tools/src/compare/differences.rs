@@ -44,12 +44,8 @@ const FACTS: [Fact; 13] = [
 /// All that differs between two runs and should not. What a file does not say (older ones have no hash of the scene) is
 /// taken to be the same.
 pub fn differences(a: &Results, b: &Results) -> Vec<Difference> {
-    let of = |(what, other_frames, value): &Fact| Difference {
-        what,
-        a: value(a),
-        b: value(b),
-        other_frames: *other_frames,
-    };
+    let of =
+        |(what, other_frames, value): &Fact| Difference { what, a: value(a), b: value(b), other_frames: *other_frames };
     let all = FACTS.iter().map(of);
     all.filter(|found| found.a != found.b && !found.a.is_empty() && !found.b.is_empty()).collect()
 }

@@ -142,9 +142,8 @@ impl Gate {
 
     /// An id means all labels of its method, also where one of them is the id itself.
     fn meant<'a>(&self, b: &'a Results) -> Result<Vec<&'a Method>> {
-        let is_meant = |method: &&Method| {
-            self.method == ANY || self.method == method.label || self.method == method.method
-        };
+        let is_meant =
+            |method: &&Method| self.method == ANY || self.method == method.label || self.method == method.method;
         let meant: Vec<&Method> = b.methods.iter().filter(is_meant).collect();
         if meant.is_empty() {
             let labels: Vec<&str> = b.methods.iter().map(|method| method.label.as_str()).collect();

@@ -137,11 +137,7 @@ fn pair(a: &Method, b: &Method, pairs: bool, options: CompareOptions) -> Result<
 fn compare_times(a: &[Option<f64>], b: &[Option<f64>], pairs: bool, bootstrap: Bootstrap) -> Times {
     let same_frames = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_some() == b.is_some());
     let [a, b] = [a, b].map(|times| times.iter().copied().flatten().collect::<Vec<f64>>());
-    Times {
-        a_ms: stats::median(&a),
-        b_ms: stats::median(&b),
-        ratio: ratio(&a, &b, pairs && same_frames, bootstrap),
-    }
+    Times { a_ms: stats::median(&a), b_ms: stats::median(&b), ratio: ratio(&a, &b, pairs && same_frames, bootstrap) }
 }
 
 fn stages(a: &Method, b: &Method, pairs: bool, bootstrap: Bootstrap) -> Vec<StagePair> {

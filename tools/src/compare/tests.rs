@@ -30,6 +30,13 @@ fn woc(run: &mut Results) -> &mut Method {
     &mut run.methods[1]
 }
 
+/// The first entry behind the last.
+fn turned(times: &[f64]) -> Vec<f64> {
+    let mut times = times.to_vec();
+    times.rotate_left(1);
+    times
+}
+
 fn compared(change: impl FnOnce(&mut Results)) -> Comparison {
     let mut b = run();
     change(&mut b);
@@ -94,10 +101,13 @@ fn a_stage_counts_only_the_frames_in_which_it_ran() {
     };
     let ran: Vec<f64> = run().methods[1].frames.stages["warp/search"].iter().flatten().copied().collect();
     assert_eq!(of(&compared(|_| ())).a_ms, stats::median(&ran));
-    // It ran in other frames of B: the frames no longer pair, and the interval is wider than the point it was.
+    // It ran in as many, but other, frames of B: they are no pairs.
     let shifted = compared(|b| woc(b).frames.stages.get_mut("warp/search").unwrap().rotate_left(1));
-    let ratio = of(&shifted).ratio.unwrap();
-    assert!(ratio.low < 1.0 && 1.0 < ratio.high, "{ratio:?}");
+    let [pairs, apart] = [true, false].map(|pairs| ratio(&ran, &ran, pairs, PLAIN.bootstrap));
+    assert_eq!((of(&compared(|_| ())).ratio, of(&shifted).ratio.is_some()), (pairs, true));
+    // Turned by one frame, the times that are there keep their order.
+    assert!(of(&shifted).ratio != pairs && of(&shifted).ratio == ratio(&ran, &turned(&ran), false, PLAIN.bootstrap));
+    assert_ne!(pairs, apart);
 }
 
 #[test]
@@ -210,7 +220,19 @@ fn an_id_means_all_its_labels_and_a_label_only_itself() {
     assert_eq!(labels(&of("woc[search.seeds=8].false_negatives>0").fails), ["woc[search.seeds=8]"]);
     // The new label has no ratio: it is passed over, and said to be.
     let ratio = of("woc.ratio>1.1");
-    assert_eq!((labels(&ratio.passes), ratio.without), (vec!["woc[search.seeds=8]".to_owned()], vec!["woc".to_owned()]));
+    assert_eq!(
+        (labels(&ratio.passes), ratio.without),
+        (vec!["woc[search.seeds=8]".to_owned()], vec!["woc".to_owned()])
+    );
+}
+
+/// A new measure, too, must not read as measured where its frames are missing.
+#[test]
+fn of_a_run_of_times_only_times_are_measured() {
+    let frames = crate::results::Frames { frame_ms: vec![1.0; 20], ..Default::default() };
+    let found = fields::fields(&Method { frames, ..Method::default() }).unwrap();
+    let measured: Vec<&str> = found.iter().filter(|(_, v)| v.is_some()).map(|(name, _)| name.as_str()).collect();
+    assert_eq!(measured, ["device_memory_mib", "frame_ms.mean", "frame_ms.median", "frame_ms.p95"]);
 }
 
 /// What was not measured reads 0 or `null` in the file: a gate on it must not pass.
@@ -249,7 +271,9 @@ fn a_gate_on_nothing_is_an_error() {
 
 #[test]
 fn faulty_gates_say_what_there_is() {
-    for text in ["woc", "woc.ratio", "woc>1", ".ratio>1", "woc.>1", "woc.ratio=1", "woc.ratio>", "woc[a=1].ratio", "a.b!3"] {
+    for text in
+        ["woc", "woc.ratio", "woc>1", ".ratio>1", "woc.>1", "woc.ratio=1", "woc.ratio>", "woc[a=1].ratio", "a.b!3"]
+    {
         assert!(text.parse::<Gate>().unwrap_err().contains("write METHOD.FIELD OP NUMBER"), "{text}");
     }
     assert!("woc.ratio>much".parse::<Gate>().unwrap_err().contains("'much' is no number"));
