@@ -42,7 +42,7 @@ pub enum Command {
     Bench(BenchArgs),
     /// Makes a report of a results.json: plots and tables, without the pictures that only `bench` has
     Report(ReportArgs),
-    /// Two results side by side: ratios with intervals, differences in errors, and gates for CI
+    /// Compares two results.json: is B faster than A, what became of the errors; and gates for CI (--fail-if)
     #[command(after_help = COMPARE_HELP)]
     Compare(CompareArgs),
     /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested

@@ -12,6 +12,7 @@ pub(crate) mod tests;
 mod write;
 
 pub use parts::parts_table;
+pub(crate) use table::{decibels, error, heading, percent, quantity};
 pub use table::{stages_table, table};
 
 use crate::files::WriteError;

@@ -1,98 +1,212 @@
-//! How sure a ratio of times is.
+//! How sure a ratio of two series of times is.
 
-use crate::stats::{median, percentile};
+use crate::stats;
 use crate::stress::Random;
 use serde::Serialize;
 
-/// Resamples drawn. 2.5 % of them are 50, so that the ends stand on more than single draws.
-const RESAMPLES: usize = 2000;
+/// The interval's ends, in percent of the resamples: 95 % lie between them.
+const ENDS: [f64; 2] = [2.5, 97.5];
 
-/// A ratio of medians with its 95 % bootstrap interval (Efron & Tibshirani 1993, percentile method). None where a time is
-/// missing or 0.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Interval {
-    /// The ratio.
-    pub ratio: Option<f64>,
-    /// 2.5 % of the resamples are below it.
-    pub low: Option<f64>,
-    /// 2.5 % of the resamples are above it.
-    pub high: Option<f64>,
+/// Fewer frames show nothing at 95 %: all n of them lie on one side of the true median with a chance of 2 / 2^n, and not
+/// even the interval from the least to the greatest holds it then. That is 6 % for 5 frames, and 3 % for 6.
+pub const FEWEST_FRAMES: usize = 6;
+
+/// How resamples are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Bootstrap {
+    /// Resamples; at least 1. Of 2000, each end of the interval stands on 50.
+    pub resamples: u32,
+    /// The same seed draws the same resamples.
+    pub seed: u64,
 }
 
-/// The median of `b` over that of `a`, frames in milliseconds. Runs of the same number of frames are resampled frame by frame,
-/// in pairs: a frame that is slow in both, because of what it shows, is then no noise. Others are resampled apart. The seed is fixed:
-/// the same files give the same interval.
+/// What the interval says of B.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Verdict {
+    /// The whole interval is below 1.
+    #[serde(rename = "faster")]
+    Faster,
+    /// The whole interval is above 1.
+    #[serde(rename = "slower")]
+    Slower,
+    /// It holds 1, or there are fewer frames than [`FEWEST_FRAMES`]. That is no proof that there is none.
+    #[serde(rename = "no difference shown")]
+    NoDifferenceShown,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::Faster => "faster",
+            Verdict::Slower => "slower",
+            Verdict::NoDifferenceShown => "no difference shown",
+        }
+    }
+}
+
+/// The ratio of two medians, with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Ratio {
+    /// Median of B over median of A.
+    pub ratio: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end; infinite where more than 2.5 % of the resamples have a median of 0 for A.
+    pub high: f64,
+    /// What the interval says.
+    pub verdict: Verdict,
+}
+
+/// Median of `b` over median of `a`, with a percentile bootstrap interval (Efron and Tibshirani 1993, chapter 13). `None` if
+/// a series is empty or the median of `a` is 0.
 ///
-/// What differs from run to run but not from frame to frame (another machine load throughout) is not in the interval.
-pub fn ratio_interval(a: &[f64], b: &[f64]) -> Interval {
-    let ratio_of = |a: &[f64], b: &[f64]| match (median(a), median(b)) {
-        (Some(a), Some(b)) if a > 0.0 => Some(b / a),
-        _ => None,
+/// With `pairs`, entry i of both is the same frame of the path, and resamples take frames, not times: a frame that is slow
+/// in both for what it shows is then no noise. Otherwise, or where the lengths differ, each series is resampled apart.
+///
+/// The admitted limits: frames count as independent of each other, though neighbours on a path resemble one another; and
+/// what holds for a whole run, such as a machine that was busy during B, is in the ratio, but not in the interval.
+pub fn ratio(a: &[f64], b: &[f64], pairs: bool, bootstrap: Bootstrap) -> Option<Ratio> {
+    let ratio = stats::median(b)? / stats::median(a).filter(|ms| *ms > 0.0)?;
+    let pairs = pairs && a.len() == b.len();
+    let mut random = Random::new(bootstrap.seed);
+    let mut chosen = |count: usize| (0..count).map(|_| random.below(count)).collect::<Vec<_>>();
+    let resamples = (0..bootstrap.resamples.max(1)).map(|_| {
+        let of_a = chosen(a.len());
+        let median_b = if pairs { median_of(b, &of_a) } else { median_of(b, &chosen(b.len())) };
+        quotient(median_b, median_of(a, &of_a))
+    });
+    let resamples: Vec<f64> = resamples.collect();
+    let [low, high] = ENDS.map(|percent| stats::percentile(&resamples, percent));
+    let (low, high) = (low?, high?);
+    let verdict = match a.len().min(b.len()) {
+        frames if frames < FEWEST_FRAMES => Verdict::NoDifferenceShown,
+        _ if high < 1.0 => Verdict::Faster,
+        _ if low > 1.0 => Verdict::Slower,
+        _ => Verdict::NoDifferenceShown,
     };
-    let mut random = Random::new(0x5167_7417);
-    let mut drawn = Vec::with_capacity(RESAMPLES);
-    if a.is_empty() || b.is_empty() {
-        return Interval { ratio: None, low: None, high: None };
+    Some(Ratio { ratio, low, high, verdict })
+}
+
+/// A stage may take less than a tick of the clock. Two of those are no difference.
+fn quotient(b: f64, a: f64) -> f64 {
+    if a == b {
+        1.0
+    } else {
+        b / a
     }
-    for _ in 0..RESAMPLES {
-        let at: Vec<usize> = a.iter().map(|_| random.below(a.len())).collect();
-        let of_a: Vec<f64> = at.iter().map(|at| a[*at]).collect();
-        let of_b: Vec<f64> = if a.len() == b.len() {
-            at.iter().map(|at| b[*at]).collect()
-        } else {
-            b.iter().map(|_| b[random.below(b.len())]).collect()
-        };
-        drawn.extend(ratio_of(&of_a, &of_b));
+}
+
+/// As [`stats::median`], of the entries chosen (at least one), without sorting them: this is all the time of a comparison.
+fn median_of(values: &[f64], chosen: &[usize]) -> f64 {
+    let mut values: Vec<f64> = chosen.iter().map(|&at| values[at]).collect();
+    let (odd, middle) = (values.len() % 2 == 1, values.len() / 2);
+    let (below, &mut above, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    let below = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if odd {
+        above
+    } else {
+        below + (above - below) * 0.5
     }
-    Interval { ratio: ratio_of(a, b), low: percentile(&drawn, 2.5), high: percentile(&drawn, 97.5) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
-    fn noisy(seed: u64, count: usize, middle: f64) -> Vec<f64> {
+    const PLAIN: Bootstrap = Bootstrap { resamples: 2000, seed: 1 };
+
+    /// Frame times around `middle` ms, a fifth up or down.
+    fn noisy(seed: u64, frames: usize, middle: f64) -> Vec<f64> {
         let mut random = Random::new(seed);
-        (0..count).map(|_| middle * random.range(0.8, 1.2)).collect()
+        (0..frames).map(|_| middle * random.range(0.8, 1.2)).collect()
+    }
+
+    fn of(a: &[f64], b: &[f64], pairs: bool) -> Ratio {
+        ratio(a, b, pairs, PLAIN).unwrap()
     }
 
     #[test]
-    fn the_interval_holds_the_true_ratio_and_not_a_wrong_one() {
-        let twice = ratio_interval(&noisy(1, 60, 10.0), &noisy(2, 60, 20.0));
-        let (low, high) = (twice.low.unwrap(), twice.high.unwrap());
-        assert!(low < 2.0 && 2.0 < high && low > 1.5 && high < 2.6, "{twice:?}");
-        let same = ratio_interval(&noisy(3, 60, 10.0), &noisy(4, 60, 10.0));
-        assert!(same.low.unwrap() < 1.0 && same.high.unwrap() > 1.0, "{same:?}");
+    fn the_interval_holds_the_true_ratio_and_no_wrong_one() {
+        for pairs in [true, false] {
+            let same = of(&noisy(1, 60, 10.0), &noisy(2, 60, 10.0), pairs);
+            assert!(same.low < 1.0 && 1.0 < same.high && same.verdict == Verdict::NoDifferenceShown, "{same:?}");
+            let twice = of(&noisy(3, 60, 10.0), &noisy(4, 60, 20.0), pairs);
+            assert!(twice.low < 2.0 && 2.0 < twice.high && twice.low > 1.0, "{twice:?}");
+            assert_eq!(twice.verdict, Verdict::Slower);
+            assert_eq!(of(&noisy(4, 60, 20.0), &noisy(3, 60, 10.0), pairs).verdict, Verdict::Faster);
+        }
     }
 
+    /// What "95 %" says: it is the true ratio that an interval misses 5 % of the time, not more than twice that.
     #[test]
-    fn more_frames_make_it_narrower() {
-        let width = |count| {
-            let interval = ratio_interval(&noisy(5, count, 10.0), &noisy(6, count, 12.0));
-            interval.high.unwrap() - interval.low.unwrap()
+    fn nine_in_ten_intervals_hold_the_true_ratio() {
+        let few = Bootstrap { resamples: 400, seed: 1 };
+        let holds = |pairs: bool| {
+            let runs = 0..200;
+            let held = runs.filter(|run| {
+                let (a, b) = (noisy(2 * run, 30, 10.0), noisy(2 * run + 1, 30, 15.0));
+                let found = ratio(&a, &b, pairs, few).unwrap();
+                found.low <= 1.5 && 1.5 <= found.high
+            });
+            held.count()
         };
-        assert!(width(400) < 0.5 * width(16), "{} and {}", width(400), width(16));
+        for pairs in [true, false] {
+            let held = holds(pairs);
+            assert!((180..200).contains(&held), "{held} of 200, in pairs: {pairs}");
+        }
     }
 
     #[test]
-    fn frames_are_paired() {
-        // Frames differ tenfold from each other, but B is 1.1 A in each.
-        let a: Vec<f64> = (0..40).map(|frame| 1.0 + f64::from(frame)).collect();
+    fn a_frame_that_is_slow_in_both_is_no_noise_in_pairs_only() {
+        let a: Vec<f64> = (1..=40).map(f64::from).collect();
         let b: Vec<f64> = a.iter().map(|ms| 1.1 * ms).collect();
-        let paired = ratio_interval(&a, &b);
-        assert!(paired.high.unwrap() - paired.low.unwrap() < 1e-9, "{paired:?}");
-        let apart = ratio_interval(&a, &b[..39]);
-        assert!(apart.high.unwrap() - apart.low.unwrap() > 0.1, "{apart:?}");
+        let (pairs, apart) = (of(&a, &b, true), of(&a, &b, false));
+        assert!(pairs.high - pairs.low < 1e-9 && pairs.verdict == Verdict::Slower, "{pairs:?}");
+        assert!(apart.low < 1.0 && apart.verdict == Verdict::NoDifferenceShown, "{apart:?}");
+        // Of other lengths there are no pairs, whatever is asked for.
+        assert_eq!(of(&a, &b[..39], true), of(&a, &b[..39], false));
     }
 
     #[test]
-    fn what_is_missing_has_no_interval_and_the_same_files_give_the_same() {
-        let none = Interval { ratio: None, low: None, high: None };
-        assert_eq!(ratio_interval(&[], &[1.0]), none);
-        assert_eq!(ratio_interval(&[0.0, 0.0], &[1.0, 1.0]), none);
-        assert_eq!(
-            ratio_interval(&[1.0, 2.0, 4.0], &[3.0, 1.0, 2.0]),
-            ratio_interval(&[1.0, 2.0, 4.0], &[3.0, 1.0, 2.0])
+    fn a_seed_draws_the_same_resamples_and_another_seed_others() {
+        let (a, b) = (noisy(5, 20, 10.0), noisy(6, 20, 11.0));
+        let by = |seed| ratio(&a, &b, true, Bootstrap { seed, ..PLAIN }).unwrap();
+        assert_eq!(by(7), by(7));
+        assert_ne!((by(7).low, by(7).high), (by(8).low, by(8).high));
+        assert_eq!(by(7).ratio, by(8).ratio);
+    }
+
+    #[test]
+    fn too_few_frames_show_nothing() {
+        let verdict = |frames| of(&vec![1.0; frames], &vec![2.0; frames], true).verdict;
+        assert_eq!(verdict(FEWEST_FRAMES), Verdict::Slower);
+        assert_eq!(verdict(FEWEST_FRAMES - 1), Verdict::NoDifferenceShown);
+        // The interval from least to greatest misses the median with a chance of 2 / 2^n.
+        let missed = |frames: usize| 2.0 * 0.5f64.powi(frames as i32);
+        assert!(missed(FEWEST_FRAMES) <= 0.05 && missed(FEWEST_FRAMES - 1) > 0.05);
+    }
+
+    #[test]
+    fn nothing_and_a_time_of_zero_have_no_ratio() {
+        assert_eq!(ratio(&[], &[1.0], true, PLAIN), None);
+        assert_eq!(ratio(&[1.0], &[], true, PLAIN), None);
+        assert_eq!(ratio(&[0.0, 0.0], &[1.0, 1.0], true, PLAIN), None);
+        // Half of A below a tick of the clock: an upper end, if an infinite one, and never a NaN.
+        let (a, b) = ([0.0, 0.0, 0.0, 2.0, 2.0, 2.0], [0.0, 0.0, 0.0, 2.0, 2.0, 3.0]);
+        let rare = of(&a, &b, false);
+        assert!(
+            rare.low >= 0.0 && rare.high == f64::INFINITY && rare.verdict == Verdict::NoDifferenceShown,
+            "{rare:?}"
         );
+    }
+
+    proptest! {
+        #[test]
+        fn the_quick_median_is_the_median(values in prop::collection::vec(-1e6..1e6f64, 1..40)) {
+            let all: Vec<usize> = (0..values.len()).collect();
+            prop_assert_eq!(Some(median_of(&values, &all)), stats::median(&values));
+        }
     }
 }

@@ -1,215 +1,193 @@
-//! Gates: `METHOD.FIELD OP NUMBER`, which must not be true.
+//! Gates: sentences such as `woc.ratio>1.1` that must not be true of a run, for continuous integration.
 
-use super::{Comparison, Row};
+use super::fields::{delta, fields, names, Fields};
+use super::Comparison;
 use crate::results::{Method, Results};
-use anyhow::{bail, Context, Result};
-use serde_json::Value;
+use anyhow::{bail, Result};
+use serde::Serialize;
+use std::str::FromStr;
+
+/// How a figure may stand to a number. Of two that begin alike, the longer comes first.
+const OPERATORS: [(&str, Holds); 6] = [
+    (">=", |figure, number| figure >= number),
+    ("<=", |figure, number| figure <= number),
+    ("==", |figure, number| figure == number),
+    ("!=", |figure, number| figure != number),
+    (">", |figure, number| figure > number),
+    ("<", |figure, number| figure < number),
+];
+
+/// The figures that only a comparison has.
+const RATIOS: [&str; 3] = ["ratio", "ratio_low", "ratio_high"];
+
+/// Behind the name of a field: B's less A's.
+const DELTA: &str = "_delta";
+
+/// The name that stands for every method.
+const ANY: &str = "any";
 
 type Holds = fn(f64, f64) -> bool;
 
-/// How two numbers may stand to each other.
-const OPERATORS: [(&str, Holds); 5] =
-    [(">=", |a, b| a >= b), ("<=", |a, b| a <= b), ("==", |a, b| a == b), (">", |a, b| a > b), ("<", |a, b| a < b)];
-
-/// Fields that only a comparison has.
-const RATIOS: [&str; 3] = ["ratio", "ratio_low", "ratio_high"];
-
-/// What ends the name of a field that is B's less A's.
-const DELTA: &str = "_delta";
-
-/// A sentence that must not be true.
+/// `METHOD.FIELD OP NUMBER`: fails if it is true.
 #[derive(Clone, Debug)]
 pub struct Gate {
-    text: String,
-    /// A label, a method's id for all its labels, or `any`.
-    method: String,
-    field: String,
-    operator: Holds,
-    bound: f64,
+    /// As it was typed.
+    pub text: String,
+    /// A label, an id (all labels of that method), or `any`.
+    pub method: String,
+    /// A field of the method's row in `results.json`, the same with `_delta`, or a ratio.
+    pub field: String,
+    holds: Holds,
+    number: f64,
 }
 
-/// A gate that was true.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fact {
-    /// The gate, as written.
-    pub gate: String,
-    /// Of which label.
+/// A method's figure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// The method.
     pub label: String,
-    /// The number found.
-    pub found: f64,
+    /// Its figure; `null` in JSON stands for infinity, as of the PSNR of identical pictures.
+    pub figure: f64,
+}
+
+/// What a gate found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// The gate as it was typed.
+    pub gate: String,
+    /// Whether it is true of any method, which must not be.
+    pub failed: bool,
+    /// The methods of which it is true.
+    pub fails: Vec<Figure>,
+    /// The methods of which it is not.
+    pub passes: Vec<Figure>,
+    /// Methods meant that have no such figure: one that is only in B has no ratio. Never all of them.
+    pub without: Vec<String>,
+}
+
+impl FromStr for Gate {
+    type Err = String;
+
+    /// Reads `woc[search.seeds=8].ratio > 1.1`. The method ends at the first dot outside of brackets, the field at the last
+    /// operator.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = "write METHOD.FIELD OP NUMBER with OP one of > >= < <= == !=, as in 'eovc.false_negatives>0'";
+        let end = text.rfind(['<', '>', '=', '!']).ok_or(form)?;
+        // An operator of two signs begins one before its last.
+        let ends_here = |(sign, _): &&(&str, Holds)| text[..=end].ends_with(sign);
+        let Some((sign, holds)) = OPERATORS.iter().find(ends_here) else { return Err(form.to_owned()) };
+        let (subject, number) = (&text[..end + 1 - sign.len()], text[end + 1..].trim());
+        let dot = first_dot(subject).ok_or(form)?;
+        let (method, field) = (subject[..dot].trim(), subject[dot + 1..].trim());
+        if method.is_empty() || field.is_empty() || number.is_empty() {
+            return Err(form.to_owned());
+        }
+        let number: f64 = number.parse().map_err(|_| format!("'{number}' is no number; {form}"))?;
+        if number.is_nan() {
+            return Err("nothing stands in any relation to NaN".to_owned());
+        }
+        Ok(Gate { text: text.to_owned(), method: method.to_owned(), field: field.to_owned(), holds: *holds, number })
+    }
+}
+
+/// Labels have dots in their brackets.
+fn first_dot(subject: &str) -> Option<usize> {
+    let mut depth = 0;
+    subject.char_indices().find_map(|(at, letter)| {
+        match letter {
+            '[' => depth += 1,
+            ']' => depth -= 1,
+            _ => {}
+        }
+        (letter == '.' && depth == 0).then_some(at)
+    })
 }
 
 impl Gate {
-    /// Reads `eovc.false_negatives>0`. The field comes behind the last dot before the operator that is not in brackets.
+    /// Looks at the methods of B that are meant; `a` and the comparison are `None` if B is alone.
     ///
     /// # Errors
-    /// Another form; says which part.
-    pub fn parse(text: &str) -> Result<Self> {
-        let form = || format!("--fail-if '{text}': write METHOD.FIELD>NUMBER, as in eovc.false_negatives>0");
-        // Behind the label's brackets, which hold '=' themselves.
-        let settings_end = text.rfind(']').map_or(0, |at| at + 1);
-        let signs = OPERATORS.iter().filter_map(|(sign, holds)| Some((text[settings_end..].find(sign)?, sign, holds)));
-        // The first sign, and of two at one place the longer, which comes first in the list.
-        let (at, sign, operator) = signs.min_by_key(|(at, ..)| *at).with_context(form)?;
-        let (left, right) = (&text[..settings_end + at], &text[settings_end + at + sign.len()..]);
-        let dot = left[settings_end..].rfind('.').with_context(form)? + settings_end;
-        let bound =
-            right.trim().parse().with_context(|| format!("--fail-if '{text}': '{}' is no number", right.trim()))?;
-        let (method, field) = (left[..dot].trim().to_owned(), left[dot + 1..].trim().to_owned());
-        if method.is_empty() || field.is_empty() {
-            bail!(form());
+    /// A method or field that is not there, with those that are; a figure that needs two files; a figure that none of the
+    /// methods meant has, because it was not measured: a gate that nothing was asked of must not pass.
+    pub fn check(&self, a: Option<&Results>, b: &Results, comparison: Option<&Comparison>) -> Result<Outcome> {
+        let two_files = RATIOS.contains(&self.field.as_str()) || self.field.ends_with(DELTA);
+        if two_files && comparison.is_none() {
+            bail!("--fail-if '{}': {} needs two files, A and B", self.text, self.field);
         }
-        Ok(Gate { text: text.to_owned(), method, field, operator: *operator, bound })
+        let mut outcome = Outcome {
+            gate: self.text.clone(),
+            failed: false,
+            fails: Vec::new(),
+            passes: Vec::new(),
+            without: Vec::new(),
+        };
+        let meant = self.meant(b)?;
+        let rows = meant.iter().map(|method| fields(method)).collect::<Result<Vec<_>>>()?;
+        self.check_field(&rows)?;
+        for (method, row) in meant.iter().zip(&rows) {
+            let label = method.label.clone();
+            match self.figure(&label, row, a, comparison)? {
+                Some(figure) if (self.holds)(figure, self.number) => outcome.fails.push(Figure { label, figure }),
+                Some(figure) => outcome.passes.push(Figure { label, figure }),
+                None => outcome.without.push(label),
+            }
+        }
+        if outcome.fails.is_empty() && outcome.passes.is_empty() {
+            let why = if two_files { "is in both files and has it measured" } else { "has it measured" };
+            bail!("--fail-if '{}': no figure; none of {} {why}", self.text, outcome.without.join(", "));
+        }
+        outcome.failed = !outcome.fails.is_empty();
+        Ok(outcome)
     }
 
-    /// Where the gate is true: of B alone, or of its comparison with A.
-    ///
-    /// # Errors
-    /// A label or a field that is not there, with those that are; a field that needs two files.
-    pub fn broken(&self, a: Option<&Results>, b: &Results, comparison: Option<&Comparison>) -> Result<Vec<Fact>> {
-        let meant: Vec<&Method> = b.methods.iter().filter(|method| self.means(method)).collect();
+    /// An id means all labels of its method, also where one of them is the id itself.
+    fn meant<'a>(&self, b: &'a Results) -> Result<Vec<&'a Method>> {
+        let is_meant =
+            |method: &&Method| self.method == ANY || self.method == method.label || self.method == method.method;
+        let meant: Vec<&Method> = b.methods.iter().filter(is_meant).collect();
         if meant.is_empty() {
             let labels: Vec<&str> = b.methods.iter().map(|method| method.label.as_str()).collect();
-            bail!(
-                "--fail-if '{}': no method is called '{}'; there are {}, or any",
-                self.text,
-                self.method,
-                labels.join(", ")
-            );
+            bail!("--fail-if '{}': B has no method '{}'; it has {}", self.text, self.method, labels.join(", "));
         }
-        let mut facts = Vec::new();
-        for method in meant {
-            let found = self.value(method, a, comparison)?;
-            if found.is_some_and(|found| (self.operator)(found, self.bound)) {
-                let found = found.unwrap_or(f64::NAN);
-                facts.push(Fact { gate: self.text.clone(), label: method.label.clone(), found });
-            }
-        }
-        Ok(facts)
+        Ok(meant)
     }
 
-    fn means(&self, method: &Method) -> bool {
-        self.method == "any" || self.method == method.label || self.method == method.method
+    fn check_field(&self, rows: &[Fields]) -> Result<()> {
+        let known = |name: &str| rows.iter().any(|row| row.contains_key(name));
+        let bare = self.field.strip_suffix(DELTA).unwrap_or(&self.field);
+        if RATIOS.contains(&self.field.as_str()) || known(&self.field) || known(bare) {
+            return Ok(());
+        }
+        let all = rows.iter().flatten().map(|(name, figure)| (name.clone(), *figure)).collect();
+        bail!(
+            "--fail-if '{}': there is no field '{}'; there are {}, each also with {DELTA} (B less A), and {}",
+            self.text,
+            self.field,
+            names(&all).join(", "),
+            RATIOS.join(", ")
+        )
     }
 
-    /// The number; none where the method is only in B and A is asked about.
-    fn value(&self, method: &Method, a: Option<&Results>, comparison: Option<&Comparison>) -> Result<Option<f64>> {
-        let two_files = || format!("--fail-if '{}': '{}' needs two files", self.text, self.field);
+    fn figure(
+        &self,
+        label: &str,
+        row: &Fields,
+        a: Option<&Results>,
+        comparison: Option<&Comparison>,
+    ) -> Result<Option<f64>> {
         if RATIOS.contains(&self.field.as_str()) {
-            let rows = &comparison.with_context(two_files)?.rows;
-            return Ok(rows.iter().find(|row| row.label == method.label).and_then(|row| self.ratio(row)));
+            let pair = comparison.and_then(|both| both.methods.iter().find(|pair| pair.label == label));
+            let ratio = pair.and_then(|pair| pair.frame.ratio);
+            return Ok(ratio.map(|ratio| match self.field.as_str() {
+                "ratio_low" => ratio.low,
+                "ratio_high" => ratio.high,
+                _ => ratio.ratio,
+            }));
         }
-        let Some(field) = self.field.strip_suffix(DELTA) else {
-            return Ok(Some(self.number(method, &self.field)?));
-        };
-        let old = a.with_context(two_files)?.method(&method.label);
-        let new = self.number(method, field)?;
-        old.map(|old| Ok(difference(new, self.number(old, field)?))).transpose()
-    }
-
-    fn ratio(&self, row: &Row) -> Option<f64> {
-        match self.field.as_str() {
-            "ratio_low" => row.ratio.low,
-            "ratio_high" => row.ratio.high,
-            _ => row.ratio.ratio,
-        }
-    }
-
-    /// A field of a method as a number: `frame_ms.median` looks into an object, and a PSNR of null is of identical pictures.
-    fn number(&self, method: &Method, field: &str) -> Result<f64> {
-        let all = serde_json::to_value(method)?;
-        let at =
-            if field == "frame_ms" { "/frame_ms/median".to_owned() } else { format!("/{}", field.replace('.', "/")) };
-        match all.pointer(&at) {
-            Some(Value::Number(number)) => Ok(number.as_f64().unwrap_or(f64::NAN)),
-            Some(Value::Null) if field.starts_with("psnr") => Ok(f64::INFINITY),
-            _ => {
-                let fields = all.as_object().into_iter().flatten();
-                let numbers =
-                    fields.filter(|(name, value)| value.is_number() || name.starts_with("psnr_") && !value.is_object());
-                let names: Vec<&str> = numbers.map(|(name, _)| name.as_str()).collect();
-                bail!(
-                    "--fail-if '{}': '{field}' is no number of a method; there are frame_ms, {}, each with {DELTA}, and {}",
-                    self.text,
-                    names.join(", "),
-                    RATIOS.join(", ")
-                )
-            }
-        }
-    }
-}
-
-/// B's less A's, where identical pictures on both sides are no difference.
-fn difference(new: f64, old: f64) -> f64 {
-    if new == old {
-        0.0
-    } else {
-        new - old
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::compare;
-    use super::*;
-    use crate::results::tests::results as example;
-
-    fn broken(gate: &str, change: impl FnOnce(&mut Method)) -> Result<Vec<Fact>> {
-        let a = example();
-        let mut b = example();
-        change(&mut b.methods[0]);
-        let comparison = compare(&a, &b, false)?;
-        Gate::parse(gate)?.broken(Some(&a), &b, Some(&comparison))
-    }
-
-    type Change = fn(&mut Method);
-
-    #[test]
-    fn gates_fire_and_do_not_fire() {
-        let id = example().methods[0].method.clone();
-        let gate = |text: &str| text.replace("ID", &id);
-        let fires: [(&str, Change); 6] = [
-            ("ID.false_negatives>7000", |method| method.false_negatives = 7001),
-            ("any.psnr_worst_db<9", |method| method.psnr_worst_db = Some(8.5)),
-            ("ID.ratio>1.4", |method| method.frames.frame_ms.iter_mut().for_each(|ms| *ms *= 1.5)),
-            ("ID.ratio_low >= 1.4", |method| method.frames.frame_ms.iter_mut().for_each(|ms| *ms *= 1.5)),
-            ("ID.drawn_mean_delta>0.5", |method| method.drawn_mean += 1.0),
-            ("ID.frame_ms>1e6", |method| method.frame_ms.median = 2e6),
-        ];
-        for (text, change) in fires {
-            assert_eq!(broken(&gate(text), |_| ()).unwrap(), [], "{text}");
-            assert!(!broken(&gate(text), change).unwrap().is_empty(), "{text}");
-        }
-        assert_eq!(broken("any.psnr_worst_db<9", |method| method.psnr_worst_db = None).unwrap(), []);
-        assert!(broken("any.psnr_worst_db_delta!=0", |_| ()).is_err());
-    }
-
-    #[test]
-    fn labels_with_settings_can_be_named() {
-        let mut b = example();
-        b.methods[0].label = "woc[threshold=0.5,size=1]".into();
-        b.methods[0].false_negatives = 3;
-        let facts =
-            Gate::parse("woc[threshold=0.5,size=1].false_negatives>=3").unwrap().broken(None, &b, None).unwrap();
-        assert_eq!(facts.len(), 1);
-    }
-
-    #[test]
-    fn what_is_wrong_with_a_gate_is_said() {
-        for (text, expected) in [
-            ("eovc", "write METHOD.FIELD>NUMBER"),
-            ("eovc.false_negatives", "write METHOD.FIELD>NUMBER"),
-            (".x>1", "write METHOD.FIELD>NUMBER"),
-            ("eovc.x>one", "'one' is no number"),
-        ] {
-            let error = format!("{:#}", Gate::parse(text).unwrap_err());
-            assert!(error.contains(expected), "{error}");
-        }
-        let unknown = broken("nobody.false_negatives>0", |_| ()).unwrap_err().to_string();
-        assert!(unknown.contains("no method is called 'nobody'; there are "), "{unknown}");
-        let field = broken("any.speed>0", |_| ()).unwrap_err().to_string();
-        assert!(field.contains("'speed' is no number of a method") && field.contains("false_negatives"), "{field}");
-        let single = Gate::parse("any.ratio>1").unwrap().broken(None, &example(), None).unwrap_err().to_string();
-        assert!(single.contains("needs two files"), "{single}");
+        let number = |row: &Fields, name: &str| row.get(name).copied().flatten();
+        let Some(bare) = self.field.strip_suffix(DELTA) else { return Ok(number(row, &self.field)) };
+        let Some(method) = a.and_then(|a| a.method(label)) else { return Ok(None) };
+        let before = number(&fields(method)?, bare);
+        Ok(before.zip(number(row, bare)).map(|(a, b)| delta(a, b)))
     }
 }

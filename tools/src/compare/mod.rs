@@ -1,182 +1,162 @@
-//! Two results side by side: is B faster than A, and by how much is that more than noise? What changed in errors? And gates,
-//! sentences that must not come true, for CI.
+//! Two runs side by side, A before and B after a change: is B faster, and is that more than noise? What became of the
+//! errors? And [`Gate`]s, which say what must not be.
 
 mod bootstrap;
+mod differences;
+mod fields;
 mod gate;
+mod print;
+#[cfg(test)]
+mod tests;
 
-pub use bootstrap::{ratio_interval, Interval};
-pub use gate::{Fact, Gate};
+pub use bootstrap::{ratio, Bootstrap, Ratio, Verdict, FEWEST_FRAMES};
+pub use differences::{differences, Difference};
+pub use gate::{Figure, Gate, Outcome};
+pub use print::{gates_text, run_lines, text};
 
 use crate::results::{Method, Results};
+use crate::stats;
 use anyhow::{bail, Result};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
-/// One label that both files have.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
+/// What to compare, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct CompareOptions {
+    /// Compare runs that differ in more than the program.
+    pub force: bool,
+    /// Also compare each stage.
+    pub stages: bool,
+    /// How the intervals are made.
+    pub bootstrap: Bootstrap,
+}
+
+/// What two files say together. Serialized, infinities are `null`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// What differs between the runs and should not; only with `force`.
+    pub differences: Vec<Difference>,
+    /// Whether times were resampled in pairs, frame by frame: frame i shows the same in both runs.
+    pub pairs: bool,
+    /// How the intervals were made.
+    pub bootstrap: Bootstrap,
+    /// The methods of both files, in B's order.
+    pub methods: Vec<Pair>,
+    /// Labels that only A has.
+    pub only_in_a: Vec<String>,
+    /// Labels that only B has.
+    pub only_in_b: Vec<String>,
+}
+
+/// One label of both files.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pair {
     /// The label.
     pub label: String,
-    /// The time of B over that of A.
-    pub ratio: Interval,
-    /// `faster`, `slower`, or `no difference shown`.
-    pub verdict: &'static str,
-    /// Visible objects missed, A and B.
-    pub false_negatives: [u64; 2],
-    /// Percent of the visible objects missed, A and B.
-    pub object_error_percent: [f64; 2],
-    /// Pixels of another depth, mean, A and B.
-    pub differing_pixels_mean: [f64; 2],
-    /// Worst picture, dB, A and B; none: identical.
-    pub psnr_worst_db: [Option<f64>; 2],
-    /// Objects drawn, mean, A and B.
-    pub drawn_mean: [f64; 2],
-    /// C/R, A and B.
-    pub culled_over_ref: [f64; 2],
-    /// By stage: the time of B over that of A, of stages that both ran.
-    pub stages: Vec<(String, Interval)>,
+    /// Options that stand at other values, one sentence each: a default that changed.
+    pub other_options: Vec<String>,
+    /// Frame times.
+    pub frame: Times,
+    /// By name, every number of the method's row but those of single stages.
+    pub fields: BTreeMap<String, Change>,
+    /// Stages in the order of B's frame, then those that only A has. Empty unless asked for.
+    pub stages: Vec<StagePair>,
 }
 
-/// What two files say together.
-#[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
-    /// Labels of both, in B's order.
-    pub rows: Vec<Row>,
-    /// Labels of A alone.
-    pub only_in_a: Vec<String>,
-    /// Labels of B alone.
-    pub only_in_b: Vec<String>,
-    /// What differs between the runs, where that was forced.
-    pub forced: Vec<String>,
+/// A stage of a method.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StagePair {
+    /// Its name.
+    pub name: String,
+    /// Its times in the frames in which it ran.
+    pub times: Times,
 }
 
-/// What must be the same for a ratio to mean anything: name and both values, where they differ.
-pub fn differences(a: &Results, b: &Results) -> Vec<String> {
-    let text = |results: &Results| {
-        [
-            ("scene", results.scene.name.clone()),
-            ("objects", results.scene.objects.to_string()),
-            ("triangles", results.scene.triangles.to_string()),
-            ("path", results.path.clone()),
-            ("speed", results.speed.to_string()),
-            ("seed", results.seed.to_string()),
-            ("size", format!("{}x{}", results.size[0], results.size[1])),
-            ("frames", results.frames.to_string()),
-            ("device", results.device.name.clone()),
-        ]
-    };
-    let pairs = text(a).into_iter().zip(text(b));
-    let mut found: Vec<String> =
-        pairs.filter(|(a, b)| a.1 != b.1).map(|((name, a), (_, b))| format!("{name}: {a} and {b}")).collect();
-    let hashes = [&a.scene.hash, &b.scene.hash];
-    if hashes[0] != hashes[1] && hashes.iter().all(|hash| !hash.is_empty()) {
-        found.push("the scene's contents".into());
-    }
-    found
+/// Times of both runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Times {
+    /// Median of A in milliseconds; `None`: it did not run there.
+    pub a_ms: Option<f64>,
+    /// Median of B in milliseconds; `None`: it did not run there.
+    pub b_ms: Option<f64>,
+    /// B over A; `None` where one of them did not run or A took no time.
+    pub ratio: Option<Ratio>,
 }
 
-/// Compares what both files have. `force` compares runs that differ in more than the program.
+/// A number of both runs. `None`: not measured. Infinite: the PSNR of identical pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// A's.
+    pub a: Option<f64>,
+    /// B's.
+    pub b: Option<f64>,
+    /// B's less A's; `None` if one of them was not measured.
+    pub delta: Option<f64>,
+}
+
+/// Compares the methods that both runs have.
 ///
 /// # Errors
-/// Runs that differ, named, unless forced; no label in common.
-pub fn compare(a: &Results, b: &Results, force: bool) -> Result<Comparison> {
-    let forced = differences(a, b);
-    if !forced.is_empty() && !force {
-        bail!("the runs differ in more than the program ({}); --force compares them all the same", forced.join("; "));
+/// Runs that differ in more than the program, each difference by name, unless forced; no label in common.
+pub fn compare(a: &Results, b: &Results, options: CompareOptions) -> Result<Comparison> {
+    let differences = differences(a, b);
+    if !differences.is_empty() && !options.force {
+        let named: Vec<String> = differences.iter().map(Difference::to_string).collect();
+        bail!("the runs differ in more than the program: {}; --force compares them all the same", named.join("; "));
     }
-    let only = |of: &Results, other: &Results| -> Vec<String> {
-        let labels = of.methods.iter().map(|method| method.label.clone());
-        labels.filter(|label| other.method(label).is_none()).collect()
+    let pairs = !differences.iter().any(|difference| difference.other_frames);
+    let both = b.methods.iter().filter_map(|of_b| a.method(&of_b.label).map(|of_a| (of_a, of_b)));
+    let methods = both.map(|(a, b)| pair(a, b, pairs, options)).collect::<Result<Vec<_>>>()?;
+    if methods.is_empty() {
+        bail!("no method is in both files: A has {}, B has {}", labels(a).join(", "), labels(b).join(", "));
+    }
+    let only = |of: &Results, other: &Results| {
+        labels(of).into_iter().filter(|label| other.method(label).is_none()).map(str::to_owned).collect()
     };
-    let both = b.methods.iter().filter_map(|new| a.method(&new.label).map(|old| row(old, new)));
-    let rows: Vec<Row> = both.collect();
-    if rows.is_empty() {
-        bail!("no method's label is in both files");
-    }
-    Ok(Comparison { rows, only_in_a: only(a, b), only_in_b: only(b, a), forced })
+    let bootstrap = options.bootstrap;
+    Ok(Comparison { differences, pairs, bootstrap, methods, only_in_a: only(a, b), only_in_b: only(b, a) })
 }
 
-fn row(a: &Method, b: &Method) -> Row {
-    let ratio = ratio_interval(&a.frames.frame_ms, &b.frames.frame_ms);
-    let verdict = match ratio {
-        Interval { high: Some(high), .. } if high < 1.0 => "faster",
-        Interval { low: Some(low), .. } if low > 1.0 => "slower",
-        _ => "no difference shown",
-    };
-    let ran = |times: &[Option<f64>]| times.iter().map(|ms| ms.unwrap_or(0.0)).collect::<Vec<f64>>();
-    let stages = b.stages.iter().filter_map(|stage| {
-        let [a, b] = [a, b].map(|method| method.frames.stages.get(&stage.name));
-        Some((stage.name.clone(), ratio_interval(&ran(a?), &ran(b?))))
-    });
-    Row {
+fn labels(results: &Results) -> Vec<&str> {
+    results.methods.iter().map(|method| method.label.as_str()).collect()
+}
+
+fn pair(a: &Method, b: &Method, pairs: bool, options: CompareOptions) -> Result<Pair> {
+    let times = [a, b].map(|method| method.frames.frame_ms.iter().map(|ms| Some(*ms)).collect::<Vec<_>>());
+    let stages = if options.stages { stages(a, b, pairs, options.bootstrap) } else { Vec::new() };
+    Ok(Pair {
         label: b.label.clone(),
-        ratio,
-        verdict,
-        false_negatives: [a.false_negatives, b.false_negatives],
-        object_error_percent: [a.object_error_percent, b.object_error_percent],
-        differing_pixels_mean: [a.differing_pixels_mean, b.differing_pixels_mean],
-        psnr_worst_db: [a.psnr_worst_db, b.psnr_worst_db],
-        drawn_mean: [a.drawn_mean, b.drawn_mean],
-        culled_over_ref: [a.culled_over_ref, b.culled_over_ref],
-        stages: stages.collect(),
-    }
+        other_options: differences::other_options(a, b),
+        frame: compare_times(&times[0], &times[1], pairs, options.bootstrap),
+        fields: changes(a, b)?,
+        stages,
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::results::tests::results as example;
+/// Frames in which something did not run have no time. Only where it ran in the same frames of both are there pairs.
+fn compare_times(a: &[Option<f64>], b: &[Option<f64>], pairs: bool, bootstrap: Bootstrap) -> Times {
+    let same_frames = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_some() == b.is_some());
+    let [a, b] = [a, b].map(|times| times.iter().copied().flatten().collect::<Vec<f64>>());
+    Times { a_ms: stats::median(&a), b_ms: stats::median(&b), ratio: ratio(&a, &b, pairs && same_frames, bootstrap) }
+}
 
-    fn timed(times: [f64; 8]) -> Results {
-        let mut results = example();
-        let method = &mut results.methods[0];
-        method.frames.frame_ms = times.to_vec();
-        results
-    }
+fn stages(a: &Method, b: &Method, pairs: bool, bootstrap: Bootstrap) -> Vec<StagePair> {
+    let of_b = b.stages.iter().map(|stage| &stage.name);
+    let only_a = a.stages.iter().map(|stage| &stage.name).filter(|name| !b.stages.iter().any(|s| s.name == **name));
+    let times = |method: &Method, name: &str| method.frames.stages.get(name).cloned().unwrap_or_default();
+    let row = |name: &String| StagePair {
+        name: name.clone(),
+        times: compare_times(&times(a, name), &times(b, name), pairs, bootstrap),
+    };
+    of_b.chain(only_a).map(row).collect()
+}
 
-    #[test]
-    fn a_run_equals_itself_and_half_the_time_is_faster() {
-        let a = timed([10.0, 11.0, 10.5, 10.2, 10.9, 10.1, 10.4, 10.7]);
-        let same = &compare(&a, &a, false).unwrap().rows[0];
-        assert_eq!((same.verdict, same.ratio.ratio), ("no difference shown", Some(1.0)));
-        let mut b = a.clone();
-        b.methods[0].frames.frame_ms.iter_mut().for_each(|ms| *ms *= 0.5);
-        assert_eq!(compare(&a, &b, false).unwrap().rows[0].verdict, "faster");
-        assert_eq!(compare(&b, &a, false).unwrap().rows[0].verdict, "slower");
-    }
-
-    type Change = fn(&mut Results);
-
-    #[test]
-    fn runs_that_differ_are_refused_by_name() {
-        let a = example();
-        let changes: [(&str, Change); 6] = [
-            ("scene", |b| b.scene.name = "another".into()),
-            ("size", |b| b.size = [1, 2]),
-            ("frames", |b| b.frames += 1),
-            ("seed", |b| b.seed += 1),
-            ("speed", |b| b.speed += 1.0),
-            ("device", |b| b.device.name = "another".into()),
-        ];
-        for (name, change) in changes {
-            let mut b = a.clone();
-            change(&mut b);
-            let refusal = compare(&a, &b, false).unwrap_err().to_string();
-            assert!(refusal.contains(&format!("{name}: ")) && refusal.contains("--force"), "{refusal}");
-            assert!(compare(&a, &b, true).unwrap().forced[0].starts_with(name));
-        }
-    }
-
-    #[test]
-    fn labels_of_one_file_are_listed() {
-        let (a, mut b) = (example(), example());
-        b.methods[0].label = "another".into();
-        let comparison = compare(&a, &b, false);
-        if a.methods.len() > 1 {
-            let comparison = comparison.unwrap();
-            assert_eq!(comparison.only_in_b, ["another"]);
-            assert_eq!(comparison.only_in_a, [a.methods[0].label.clone()]);
-        } else {
-            assert!(comparison.is_err());
-        }
-    }
+fn changes(a: &Method, b: &Method) -> Result<BTreeMap<String, Change>> {
+    let (a, b) = (fields::fields(a)?, fields::fields(b)?);
+    let names = a.keys().chain(b.keys()).filter(|name| !name.starts_with("stages."));
+    let change = |name: &String| {
+        let [a, b] = [&a, &b].map(|fields| fields.get(name).copied().flatten());
+        (name.clone(), Change { a, b, delta: a.zip(b).map(|(a, b)| fields::delta(a, b)) })
+    };
+    Ok(names.map(change).collect())
 }

@@ -117,7 +117,7 @@ fn ratio(part: f64, base: f64) -> String {
 }
 
 /// One decimal, but never 100.0 for less than all and never 0.0 for more than nothing.
-fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent < 100.0 && percent > 99.9 {
         ">99.9".into()
@@ -129,7 +129,7 @@ fn percent(share: f64) -> String {
 }
 
 /// Never 0 for an error that is there.
-fn error(mean: f64) -> String {
+pub(crate) fn error(mean: f64) -> String {
     match mean {
         0.0 => "0".into(),
         mean if mean < 0.01 => "<0.01".into(),
@@ -138,7 +138,7 @@ fn error(mean: f64) -> String {
     }
 }
 
-fn decibels(psnr: Option<f64>) -> String {
+pub(crate) fn decibels(psnr: Option<f64>) -> String {
     psnr.map_or("identical".into(), |db| format!("{db:.1}"))
 }
 
@@ -147,7 +147,7 @@ fn overdraw(mean: Option<f64>) -> String {
 }
 
 /// Whole below 10,000, then with k, M or G.
-fn quantity(count: f64) -> String {
+pub(crate) fn quantity(count: f64) -> String {
     match count {
         count if count < 9999.5 => format!("{count:.0}"),
         count if count < 999.95e3 => format!("{:.1}k", count / 1e3),
