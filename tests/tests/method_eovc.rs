@@ -23,16 +23,20 @@ fn subjects() -> Vec<Subject> {
     settings().into_iter().map(with).collect()
 }
 
+/// Settings take turns at the worlds.
 #[test]
 fn no_setting_culls_a_visible_object() {
     let gpu = gpu();
     let cases = worlds::special();
     let subjects = subjects();
     assert_eq!(subjects.len(), 24);
-    let faults = subjects.iter().flat_map(|subject| {
-        cases.iter().flat_map(|case| laws::no_visible_object_is_culled(&gpu, subject, case)).collect::<Vec<_>>()
-    });
-    assert_none(&faults.collect::<Vec<_>>());
+    let mut faults = Vec::new();
+    for (setting, subject) in subjects.iter().enumerate() {
+        for (_, case) in cases.iter().enumerate().filter(|(case, _)| harness::takes_turn(setting, *case, 4)) {
+            faults.extend(laws::no_visible_object_is_culled(&gpu, subject, case));
+        }
+    }
+    assert_none(&faults);
 }
 
 #[test]

@@ -27,11 +27,13 @@ fn cut(set: &[(&str, &str)]) -> Subject {
     set.iter().fold(Subject::named("roc-iterative"), |subject, (option, value)| subject.with(option, value))
 }
 
+/// Cuts take turns at the worlds.
 #[test]
 fn any_cut_is_exact() {
     let gpu = gpu();
-    for subject in CUTS.map(cut) {
-        for case in worlds::special() {
+    for (setting, subject) in CUTS.map(cut).into_iter().enumerate() {
+        let cases = worlds::special().into_iter().enumerate();
+        for (_, case) in cases.filter(|(case, _)| harness::takes_turn(setting, *case, 3)) {
             assert_none(&laws::no_visible_object_is_culled(&gpu, &subject, &case));
         }
         assert_none(&laws::a_resize_hides_nothing(&gpu, &subject, &worlds::walled(200)));

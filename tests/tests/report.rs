@@ -46,7 +46,7 @@ fn sightline(arguments: &str, paths: &[&Path]) -> Result<(), String> {
 /// Few small frames, with a method that errs: `woc` without its care, at a speed at which it does.
 fn bench(flags: &str, out: &Path) -> Result<(), String> {
     let run = "bench --validation --scene city-block --scale 0.05 --frames 4 --speed 16 --size 320x180 --warmup 1";
-    let methods = "--method none,frustum,woc[size=1,erode=false,rapid=0,seeds=4],ref";
+    let methods = "--method none,frustum,woc[size=1,erode=none,rapid=0,seeds=4],ref";
     sightline(&format!("{run} {methods} {flags} --out"), &[out])
 }
 

@@ -64,11 +64,14 @@ const CAPACITY: usize = 512;
 
 static INSTANCES: AtomicU32 = AtomicU32::new(0);
 
+/// Where the camera is and what it sees: matrix, and place in two parts.
+type Camera = ([[f32; 4]; 4], [f32; 3], [f32; 3]);
+
 /// Two-phase culling by a pyramid, as `hzb`, with a bug.
 struct Buggy {
     bug: Bug,
     gpu: Gpu,
-    last: Option<([[f32; 4]; 4], [f32; 3], [f32; 3])>,
+    last: Option<Camera>,
     commands: Buffer<DrawCommand>,
     bounds: Buffer<Bounds>,
     seen: Buffer<u32>,

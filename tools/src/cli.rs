@@ -3,10 +3,12 @@
 mod compare;
 mod methods;
 mod stress;
+mod sweep;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use methods::{parse_methods, parse_setting};
 pub use stress::{StressArgs, STRESS_HELP};
+pub use sweep::SweepArgs;
 
 use crate::session::SessionOptions;
 use crate::tables::TABLES;
@@ -143,6 +145,9 @@ pub struct BenchArgs {
     /// closing-in (eovc-*) or a walk (woc-*, tog-*), unless --path names another
     #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["capture", "json"])]
     pub table: Option<String>,
+    /// Sweeps of options.
+    #[command(flatten)]
+    pub sweeps: SweepArgs,
     /// Device.
     #[command(flatten)]
     pub device: DeviceArgs,

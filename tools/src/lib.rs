@@ -17,6 +17,7 @@ pub mod run;
 pub mod session;
 pub mod stats;
 pub mod stress;
+pub mod sweep;
 pub mod tables;
 pub mod targets;
 pub mod trace;

@@ -13,5 +13,5 @@ fn main() -> ExitCode {
         .without_time()
         .with_target(false)
         .init();
-    sightline::commands::run(sightline::cli::Cli::parse())
+    sightline::commands::exit_code(sightline::cli::Cli::parse())
 }

@@ -101,6 +101,9 @@ pub struct Method {
     /// Median per frame of the host's time outside the driver.
     #[serde(default)]
     pub host_ms: Option<f64>,
+    /// In a sweep, the median as a multiple of that of `ref` in the same cell: what settings of different cells are compared by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio_to_ref: Option<f64>,
     /// The stages in the order of the frame.
     pub stages: Vec<Stage>,
     /// Visible objects that were not drawn, summed over frames.

@@ -7,6 +7,7 @@ mod report;
 mod scene;
 mod shot;
 mod stress;
+mod sweep;
 mod table;
 
 pub use stress::all_drills;
@@ -16,20 +17,28 @@ use anyhow::Result;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-/// Runs the command that was typed. An error is told in one line: the chain of causes, outermost first.
-pub fn run(cli: Cli) -> ExitCode {
-    let error_code = if matches!(cli.command, Command::Compare(_)) { compare::ERROR } else { 1 };
-    run_command(cli).unwrap_or_else(|error| {
-        eprintln!("sightline: {error:#}");
-        ExitCode::from(error_code)
-    })
+/// Runs the command that was typed, and says by its exit code what became of it: 0 good, 1 an error, or a gate of `compare` that was
+/// true; an error of `compare` is 2, so that CI can tell it from a gate.
+pub fn exit_code(cli: Cli) -> ExitCode {
+    let compares = matches!(cli.command, Command::Compare(_));
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: the chain of causes, outermost first.
+            eprintln!("sightline: {error:#}");
+            let is_gate = error.is::<compare::GatesTrue>();
+            ExitCode::from(if compares && !is_gate { 2 } else { 1 })
+        }
+    }
 }
 
-fn run_command(cli: Cli) -> Result<ExitCode> {
+/// Runs the command that was typed.
+pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
-        Command::Compare(arguments) => return compare::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => match &arguments.table {
             Some(table) => table::run(&arguments, table),
+            None if !arguments.sweeps.sweep.is_empty() => sweep::run(&arguments),
             None => bench::run(&arguments),
         },
         Command::Report(arguments) => report::run(&arguments),
@@ -37,8 +46,7 @@ fn run_command(cli: Cli) -> Result<ExitCode> {
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
-    }?;
-    Ok(ExitCode::SUCCESS)
+    }
 }
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.

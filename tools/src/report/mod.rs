@@ -107,6 +107,9 @@ fn first_of<'a>(results: &'a Results, id: &str) -> Option<&'a Method> {
 
 /// A method's median frame time as a multiple of that of the first setting of `id`; none if that did not run or took no time.
 fn ratio_to(results: &Results, id: &str, method: &Method) -> Option<f64> {
+    if let ("ref", Some(ratio)) = (id, method.ratio_to_ref) {
+        return Some(ratio);
+    }
     let reference = first_of(results, id)?.frame_ms.median;
     (reference > 0.0).then(|| method.frame_ms.median / reference)
 }

@@ -1,7 +1,7 @@
 //! The title, and three sentences for a reader in a hurry.
 
 use super::plot::number;
-use super::{first_of, is_faultless, is_ideal, is_measured, ratio_to};
+use super::{first_of, is_faultless, is_ideal, is_measured, ratio_to, time};
 use crate::results::{Method, Results};
 
 /// What was run, in a line.
@@ -44,7 +44,7 @@ fn fastest(results: &Results) -> String {
     let measured = is_measured(results);
     let real = results.methods.iter().filter(|method| !is_ideal(method));
     let right = real.filter(|method| !measured || is_faultless(method));
-    let Some(best) = right.min_by(|one, other| one.frame_ms.median.total_cmp(&other.frame_ms.median)) else {
+    let Some(best) = right.min_by(|one, other| time(results, one).total_cmp(&time(results, other))) else {
         return "No method drew all frames without a fault.".to_owned();
     };
     let with = if measured { "Fastest without a single wrong pixel" } else { "Fastest" };

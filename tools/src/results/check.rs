@@ -71,6 +71,7 @@ impl Method {
             ("frame_ms.p95", Some(self.frame_ms.p95)),
             ("frame_ms.mean", Some(self.frame_ms.mean)),
             ("host_ms", self.host_ms),
+            ("ratio_to_ref", self.ratio_to_ref),
             ("object_error_percent", Some(self.object_error_percent)),
             ("differing_pixels_mean", Some(self.differing_pixels_mean)),
             ("tied_pixels_mean", Some(self.tied_pixels_mean)),

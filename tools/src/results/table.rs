@@ -72,7 +72,12 @@ fn columns(results: &Results) -> Vec<Column> {
     for (id, head) in [("none", "/none"), ("ref", "/ref")] {
         let base = results.methods.iter().find(|method| method.method == id);
         if let Some(base) = base.map(|base| base.frame_ms.median) {
-            add(head, Box::new(move |m| ratio(m.frame_ms.median, base)));
+            // A sweep's settings are compared within their cells.
+            let within = move |m: &Method| m.ratio_to_ref.filter(|_| id == "ref");
+            add(
+                head,
+                Box::new(move |m| within(m).map_or_else(|| ratio(m.frame_ms.median, base), |own| ratio(own, 1.0))),
+            );
         }
     }
     add("p95", Box::new(|m| milliseconds(m.frame_ms.p95)));

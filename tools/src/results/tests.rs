@@ -303,3 +303,12 @@ fn frame_times_of_nothing_are_nothing() {
     let one = FrameMs::from_samples(&[2.0]).unwrap();
     assert_eq!((one.median, one.p95, one.mean), (2.0, 2.0, 2.0));
 }
+
+#[test]
+fn settings_of_a_sweep_are_compared_within_their_cells() {
+    let mut results = results();
+    assert!(table(&results).contains("1.25"), "12.5 ms of 10 ms");
+    results.methods[1].ratio_to_ref = Some(7.75);
+    let swept = table(&results);
+    assert!(swept.contains("7.75") && !swept.contains("1.25 "), "{swept}");
+}
