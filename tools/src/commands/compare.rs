@@ -7,13 +7,14 @@ use crate::results::Results;
 use anyhow::{bail, Result};
 use serde::Serialize;
 use std::path::Path;
-use std::process::ExitCode;
 
-/// The exit code of a failed gate.
-const GATE_FAILED: u8 = 1;
-
-/// The exit code of an error, so that a script can tell it from a failed gate. Faulty arguments end with it too.
-pub const ERROR: u8 = 2;
+/// Gates failed. Their figures were printed with the comparison.
+#[derive(Debug, thiserror::Error)]
+#[error("{failed} of {of} gates failed")]
+pub struct GatesTrue {
+    failed: usize,
+    of: usize,
+}
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -24,8 +25,11 @@ struct Report<'a> {
     gates: Vec<Outcome>,
 }
 
-/// Compares, looks at the gates, and prints both. The exit code says whether a gate failed.
-pub fn run(arguments: &CompareArgs) -> Result<ExitCode> {
+/// Compares, looks at the gates, and prints both.
+///
+/// # Errors
+/// [`GatesTrue`], to be told from all others; those have exit code 2, as faulty arguments have.
+pub fn run(arguments: &CompareArgs) -> Result<()> {
     let (path_a, path_b) = match arguments.files.as_slice() {
         [a, b] => (Some(a.as_path()), b.as_path()),
         [b] if arguments.fail_if.is_empty() => {
@@ -39,7 +43,7 @@ pub fn run(arguments: &CompareArgs) -> Result<ExitCode> {
     let comparison = a.as_ref().map(|a| compare(a, &b, arguments.options())).transpose()?;
     let check = arguments.fail_if.iter().map(|gate| gate.check(a.as_ref(), &b, comparison.as_ref()));
     let gates = check.collect::<Result<Vec<_>>>()?;
-    let failed = gates.iter().any(|gate| gate.failed);
+    let (failed, of) = (gates.iter().filter(|gate| gate.failed).count(), gates.len());
     if arguments.json {
         say(&serde_json::to_string_pretty(&Report { a: path_a, b: path_b, comparison, gates })?)?;
     } else {

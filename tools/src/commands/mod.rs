@@ -40,8 +40,7 @@ pub fn run(cli: Cli) -> Result<ExitCode> {
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
-    }?;
-    Ok(ExitCode::SUCCESS)
+    }
 }
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.
