@@ -55,5 +55,8 @@ pub fn run(arguments: &CompareArgs) -> Result<()> {
         let compared = comparison.map_or(String::new(), |comparison| format!("{}\n", text(&comparison, &b)));
         say(format!("{compared}{}", gates_text(&gates)).trim_end())?;
     }
-    Ok(if failed { ExitCode::from(GATE_FAILED) } else { ExitCode::SUCCESS })
+    if failed > 0 {
+        return Err(GatesTrue { failed, of }.into());
+    }
+    Ok(())
 }

@@ -17,19 +17,25 @@ use anyhow::Result;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-/// Runs the command that was typed. An error is told in one line: the chain of causes, outermost first.
+/// Runs the command that was typed, and says by its exit code what became of it: 0 good, 1 an error, or a gate of `compare` that was
+/// true; an error of `compare` is 2, so that CI can tell it from a gate.
 pub fn exit_code(cli: Cli) -> ExitCode {
-    let error_code = if matches!(cli.command, Command::Compare(_)) { compare::ERROR } else { 1 };
-    run(cli).unwrap_or_else(|error| {
-        eprintln!("sightline: {error:#}");
-        ExitCode::from(error_code)
-    })
+    let compares = matches!(cli.command, Command::Compare(_));
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: the chain of causes, outermost first.
+            eprintln!("sightline: {error:#}");
+            let is_gate = error.is::<compare::GatesTrue>();
+            ExitCode::from(if compares && !is_gate { 2 } else { 1 })
+        }
+    }
 }
 
-/// Runs the command that was typed, and says how a program that did so ends.
-pub fn run(cli: Cli) -> Result<ExitCode> {
+/// Runs the command that was typed.
+pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
-        Command::Compare(arguments) => return compare::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => match &arguments.table {
             Some(table) => table::run(&arguments, table),
             None if !arguments.sweeps.sweep.is_empty() => sweep::run(&arguments),

@@ -47,7 +47,7 @@ pub fn run(arguments: &StressArgs) -> Result<()> {
     let mut wrong: Vec<String> = accepted.into_iter().map(|fault| format!("refusals: {fault}")).collect();
     wrong.extend(outcome.broken_bounds.iter().map(|fault| format!("bounds: {fault}")));
     for (index, failure) in outcome.failures.iter().enumerate() {
-        wrong.push(told(arguments, &gpu, &plan, failure, index < SAVED_FAILURES)?);
+        wrong.push(told(arguments, &gpu, &plan, failure, index)?);
     }
     if !wrong.is_empty() {
         wrong.iter().for_each(|line| eprintln!("{line}"));
@@ -84,7 +84,7 @@ pub fn all_drills(first: u64, seeds: u64, cases: u64) -> Vec<DrillId> {
 }
 
 /// A failure in words; made small and saved if asked to.
-fn told(arguments: &StressArgs, gpu: &Gpu, plan: &Plan, failure: &Failure, keep: bool) -> Result<String> {
+fn told(arguments: &StressArgs, gpu: &Gpu, plan: &Plan, failure: &Failure, index: usize) -> Result<String> {
     let Failure { subject, drill, faults } = failure;
     let size = arguments.size.map(|[width, height]| format!(" --size {width}x{height}")).unwrap_or_default();
     let mut text = format!(
@@ -94,9 +94,10 @@ fn told(arguments: &StressArgs, gpu: &Gpu, plan: &Plan, failure: &Failure, keep:
         subject.options.label(),
         plan.bodies,
     );
-    if keep {
+    if index < SAVED_FAILURES {
         let small = shrink::shrunk(gpu, subject, &plan.drill(*drill));
-        let name = format!("{}-{drill}", subject.options.label()).replace(['/', '[', ']', '=', ','], "-");
+        // The settings are in drill.json: all of them would be too long for a file system.
+        let name = format!("{index}-{}-{drill}", subject.options.method()).replace('/', "-");
         let folder = arguments.out.join("failures").join(name);
         save::save(gpu, subject, &small, faults, &folder)?;
         let (objects, frames) = (small.case.scene.objects.len(), small.case.shots.len());
