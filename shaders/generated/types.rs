@@ -17,6 +17,9 @@ pub const RAPID_INVOCATIONS: u32 = 1024;
 /// Texels of a row that one invocation writes: an invocation for each costs more than the work.
 pub const FARTHEST_STRIP: u32 = 16;
 
+/// Squares that cover a whole picture, at most.
+pub const FARTHEST_LOOKUPS: u32 = 256;
+
 /// `DEPTH_SLACK_PER_PIXEL` in GLSL.
 pub const DEPTH_SLACK_PER_PIXEL: f32 = 8.0;
 
@@ -221,13 +224,16 @@ pub struct FarthestShape {
     pub mip_levels: u32,
     /// Square level n \>= 1 is entry squares_after + n of the table of levels.
     pub squares_after: u32,
+    /// The last square level.
+    pub coarsest_square: u32,
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(FarthestShape, reduction) == 0);
     assert!(std::mem::offset_of!(FarthestShape, mip_levels) == 4);
     assert!(std::mem::offset_of!(FarthestShape, squares_after) == 8);
-    assert!(size_of::<FarthestShape>() == 12);
+    assert!(std::mem::offset_of!(FarthestShape, coarsest_square) == 12);
+    assert!(size_of::<FarthestShape>() == 16);
 };
 
 /// Where a mesh lies in the shared index and vertex buffers.

@@ -6,7 +6,7 @@ pub mod twin;
 
 use crate::{Result, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
-use shaders::types::{FarthestShape, PyramidLevel, FARTHEST_STRIP, REDUCED_LEVELS};
+use shaders::types::{FarthestShape, PyramidLevel, FARTHEST_LOOKUPS, FARTHEST_STRIP, REDUCED_LEVELS};
 use shaders::{farthest, hzb, BufferRef, Stage};
 
 /// How farthest depths of large regions are kept.
@@ -53,7 +53,10 @@ pub fn layout(size_px: [u32; 2], kind: MapKind) -> (Vec<PyramidLevel>, FarthestS
     let squares_after = mip_levels.next_multiple_of(REDUCED_LEVELS);
     let mips = (0..=squares_after).map(|level| if level <= mip_levels { halved(base, level) } else { [0, 0] });
     let last_mip = halved(base, mip_levels);
-    let squares = (1..=last_mip[0].min(last_mip[1]).ilog2()).map(|n| last_mip.map(|side| side + 1 - (1 << n)));
+    let covers = |n: u32| last_mip.iter().map(|side| side.div_ceil(1 << n)).product::<u32>() <= FARTHEST_LOOKUPS;
+    let widest = last_mip[0].min(last_mip[1]).ilog2();
+    let coarsest_square = (0..widest).find(|n| covers(*n)).unwrap_or(widest);
+    let squares = (1..=coarsest_square).map(|n| last_mip.map(|side| side + 1 - (1 << n)));
     let mut first = 0;
     let place = |[width, height]: [u32; 2]| {
         let level = PyramidLevel { first, width, height };
@@ -61,7 +64,7 @@ pub fn layout(size_px: [u32; 2], kind: MapKind) -> (Vec<PyramidLevel>, FarthestS
         level
     };
     let levels = mips.chain(squares).map(place).collect();
-    (levels, FarthestShape { reduction: kind.reduction, mip_levels, squares_after })
+    (levels, FarthestShape { reduction: kind.reduction, mip_levels, squares_after, coarsest_square })
 }
 
 impl FarthestMap {

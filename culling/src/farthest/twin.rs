@@ -56,11 +56,11 @@ impl Map {
     /// The farthest depth from the first to the last pixel. Twin of `farthest_within`.
     pub fn farthest_within(&self, first_px: [u32; 2], last_px: [u32; 2]) -> f32 {
         let level_within = |first: [u32; 2], last: [u32; 2]| (0..2).map(|i| (last[i] - first[i] + 1).ilog2()).min();
-        let FarthestShape { reduction, mip_levels, squares_after } = self.shape;
+        let FarthestShape { reduction, mip_levels, squares_after, coarsest_square } = self.shape;
         let (first, last) = (first_px.map(|side| side >> reduction), last_px.map(|side| side >> reduction));
         let mip = level_within(first, last).unwrap_or(0).min(mip_levels);
         let (first, last) = (first.map(|side| side >> mip), last.map(|side| side >> mip));
-        let square = if mip < mip_levels { 0 } else { level_within(first, last).unwrap_or(0) };
+        let square = if mip < mip_levels { 0 } else { level_within(first, last).unwrap_or(0).min(coarsest_square) };
         let level = self.levels[if square == 0 { mip } else { squares_after + square } as usize];
         let side = 1 << square;
         // Where squares begin: side by side, the last moved back to end with the region.

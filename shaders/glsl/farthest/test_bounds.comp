@@ -21,7 +21,7 @@ uint level_within(uvec2 sides) {
     return uint(findMSB(min(sides.x, sides.y)));
 }
 
-// The farthest depth of a region of a x b texels, by level floor(log2 min(a, b)) and as many lookups as its squares need to
+// The farthest depth of a region of a x b texels, by level floor(log2 min(a, b)), or the coarsest, and as many lookups as its squares need to
 // cover the region: ceil(a / 2^level) x ceil(b / 2^level). Squares of an N-buffer begin anywhere, so the last of each row and
 // column is moved back to end with the region. Texels of a mip level do not, and may reach out of it: that is conservative.
 float farthest_within(uvec2 first_px, uvec2 last_px) {
@@ -31,7 +31,7 @@ float farthest_within(uvec2 first_px, uvec2 last_px) {
     first >>= mip;
     last >>= mip;
     uvec2 sides = last - first + 1u;
-    uint square = mip < push.shape.mip_levels ? 0u : level_within(sides);
+    uint square = mip < push.shape.mip_levels ? 0u : min(level_within(sides), push.shape.coarsest_square);
     PyramidLevel level = levels.items[square == 0u ? mip : push.shape.squares_after + square];
     uvec2 squares = (sides + (1u << square) - 1u) >> square;
     uvec2 last_square = last + 1u - (1u << square);
