@@ -70,10 +70,18 @@ pub struct BoundMotion {
     pub pyramid: BufferRef<types::MotionBound>,
     /// `axes` in GLSL.
     pub axes: BufferRef<[f32; 2]>,
+    /// `depth` in GLSL.
+    pub depth: BufferRef<f32>,
+    /// `camera` in GLSL.
+    pub camera: types::Reprojection,
     /// `texels` in GLSL.
     pub texels: [u32; 2],
     /// `tiles` in GLSL.
     pub tiles: [u32; 2],
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
+    /// `fastest` in GLSL.
+    pub fastest: f32,
     /// Specialization constants.
     pub constants: BoundMotionConstants,
 }
@@ -90,9 +98,14 @@ impl Stage for BoundMotion {
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "axes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "depth", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
-        push_size: 16,
-        constants: &[ConstantInfo { name: "ORIENTED", id: 0 }],
+        push_size: 92,
+        constants: &[
+            ConstantInfo { name: "ORIENTED", id: 0 },
+            ConstantInfo { name: "STORED", id: 1 },
+            ConstantInfo { name: "REDUCTION", id: 2 },
+        ],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -100,12 +113,18 @@ impl Stage for BoundMotion {
     };
 
     fn bind(&self) -> BoundStage {
-        let push = BoundMotionPush { texels: self.texels, tiles: self.tiles };
+        let push = BoundMotionPush {
+            camera: self.camera,
+            texels: self.texels,
+            tiles: self.tiles,
+            size_px: self.size_px,
+            fastest: self.fastest,
+        };
         BoundStage::new(
             Self::INFO,
-            vec![self.motions.into(), self.levels.into(), self.pyramid.into(), self.axes.into()],
+            vec![self.motions.into(), self.levels.into(), self.pyramid.into(), self.axes.into(), self.depth.into()],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.oriented)],
+            vec![u32::from(self.constants.oriented), u32::from(self.constants.stored), self.constants.reduction],
         )
     }
 }
@@ -115,14 +134,20 @@ impl ComputeStage for BoundMotion {}
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct BoundMotionPush {
+    camera: types::Reprojection,
     texels: [u32; 2],
     tiles: [u32; 2],
+    size_px: [u32; 2],
+    fastest: f32,
 }
 
 const _: () = {
-    assert!(std::mem::offset_of!(BoundMotionPush, texels) == 0);
-    assert!(std::mem::offset_of!(BoundMotionPush, tiles) == 8);
-    assert!(size_of::<BoundMotionPush>() == 16);
+    assert!(std::mem::offset_of!(BoundMotionPush, camera) == 0);
+    assert!(std::mem::offset_of!(BoundMotionPush, texels) == 64);
+    assert!(std::mem::offset_of!(BoundMotionPush, tiles) == 72);
+    assert!(std::mem::offset_of!(BoundMotionPush, size_px) == 80);
+    assert!(std::mem::offset_of!(BoundMotionPush, fastest) == 88);
+    assert!(size_of::<BoundMotionPush>() == 92);
 };
 
 /// Specialization constants of [`BoundMotion`].
@@ -130,12 +155,17 @@ const _: () = {
 pub struct BoundMotionConstants {
     /// Bounds lie along the axes that warp/orient_axes found; otherwise along x and y.
     pub oriented: bool,
+    /// Motions are in the buffer; otherwise they are computed from the depth of each texel's middle pixel, which the camera alone
+    /// moves: that costs less than four words written and read.
+    pub stored: bool,
+    /// Pixels of a texel's side.
+    pub reduction: u32,
 }
 
 impl Default for BoundMotionConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { oriented: false }
+        Self { oriented: false, stored: true, reduction: 1 }
     }
 }
 
@@ -245,12 +275,7 @@ impl Default for ErodeDepthConstants {
 /// what the camera did and, where objects move, what the pixel's object did (TOG 2018, 3.1). At reduced size the farthest
 /// pixel of each block stands for it, so that what is warped hides no more than what was there; or its MIDDLE one, where
 /// warp/search_depth looks at all of them.
-/// Twin: culling/src/warp/twin.rs
-///
-/// Accuracy: the host combines both views and both places of the object in f64 into one matrix M, rounded to f32 once. With
-/// u = 2^-24, x' = M0 . (x, y, depth, 1) and w' are off by at most 5u sum_j |M_ij| |v_j| (rounding of M, four products, three
-/// sums), which for motions of up to a third of the picture is below 5u \* 4 w'; the place x' / w' by twice that and u:
-/// 41u of half the picture's side, 0.002 pixels at 1280.
+/// Twin: culling/src/warp/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasureMotion {
     /// `depth` in GLSL.
@@ -437,7 +462,7 @@ pub struct SearchDepth {
     pub warped: BufferRef<f32>,
     /// `axes` in GLSL.
     pub axes: BufferRef<[f32; 2]>,
-    /// What FOOTPRINT reads, as warp/measure_motion does.
+    /// What FOOTPRINT and motions that are not stored read, as warp/measure_motion does.
     pub last_depth: BufferRef<f32>,
     /// `items` in GLSL.
     pub items: BufferRef<u32>,
@@ -453,6 +478,8 @@ pub struct SearchDepth {
     pub tiles: [u32; 2],
     /// `size_px` in GLSL.
     pub size_px: [u32; 2],
+    /// `fastest` in GLSL.
+    pub fastest: f32,
     /// Specialization constants.
     pub constants: SearchDepthConstants,
 }
@@ -474,7 +501,7 @@ impl Stage for SearchDepth {
             BindingInfo { name: "slots", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "reprojections", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
-        push_size: 88,
+        push_size: 92,
         constants: &[
             ConstantInfo { name: "SEEDS", id: 0 },
             ConstantInfo { name: "ITERATIONS", id: 1 },
@@ -487,6 +514,7 @@ impl Stage for SearchDepth {
             ConstantInfo { name: "DYNAMIC", id: 8 },
             ConstantInfo { name: "REDUCTION", id: 9 },
             ConstantInfo { name: "MARGIN", id: 10 },
+            ConstantInfo { name: "STORED", id: 11 },
         ],
         local_size: [8, 8, 1],
         vertex: &[],
@@ -495,8 +523,13 @@ impl Stage for SearchDepth {
     };
 
     fn bind(&self) -> BoundStage {
-        let push =
-            SearchDepthPush { camera: self.camera, texels: self.texels, tiles: self.tiles, size_px: self.size_px };
+        let push = SearchDepthPush {
+            camera: self.camera,
+            texels: self.texels,
+            tiles: self.tiles,
+            size_px: self.size_px,
+            fastest: self.fastest,
+        };
         BoundStage::new(
             Self::INFO,
             vec![
@@ -522,6 +555,7 @@ impl Stage for SearchDepth {
                 u32::from(self.constants.dynamic),
                 self.constants.reduction,
                 self.constants.margin,
+                u32::from(self.constants.stored),
             ],
         )
     }
@@ -536,6 +570,7 @@ struct SearchDepthPush {
     texels: [u32; 2],
     tiles: [u32; 2],
     size_px: [u32; 2],
+    fastest: f32,
 }
 
 const _: () = {
@@ -543,7 +578,8 @@ const _: () = {
     assert!(std::mem::offset_of!(SearchDepthPush, texels) == 64);
     assert!(std::mem::offset_of!(SearchDepthPush, tiles) == 72);
     assert!(std::mem::offset_of!(SearchDepthPush, size_px) == 80);
-    assert!(size_of::<SearchDepthPush>() == 88);
+    assert!(std::mem::offset_of!(SearchDepthPush, fastest) == 88);
+    assert!(size_of::<SearchDepthPush>() == 92);
 };
 
 /// Specialization constants of [`SearchDepth`].
@@ -571,6 +607,8 @@ pub struct SearchDepthConstants {
     pub reduction: u32,
     /// Pixels around a footprint that count too.
     pub margin: u32,
+    /// Motions are in the buffer; otherwise they are computed where they are looked up, as in warp/bound_motion.
+    pub stored: bool,
 }
 
 impl Default for SearchDepthConstants {
@@ -588,6 +626,7 @@ impl Default for SearchDepthConstants {
             dynamic: false,
             reduction: 1,
             margin: 0,
+            stored: true,
         }
     }
 }

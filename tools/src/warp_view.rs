@@ -42,6 +42,7 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
     };
     let last_view = session.look(before)?;
     contender.run(session, &last_view, true)?;
+    let settings = Settings { stored: true, ..settings }; // for the picture of it
     let mut warp = Warp::new(&session.gpu, &session.world, last_view.size, settings).context("depth warping")?;
     let mut f = session.gpu.frame();
     warp.keep(&mut f, &session.world, &last_view, &session.targets.with_items());

@@ -10,7 +10,9 @@ mod settings;
 pub mod twin;
 
 pub use reprojection::{reprojections, LastFrame, Reprojections};
-pub use settings::{Settings, ITERATIONS, LOOKUPS, MARGIN, NARROW, OPTIONS, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
+pub use settings::{
+    Settings, ITERATIONS, LOOKUPS, MARGIN, MOTION, NARROW, OPTIONS, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE,
+};
 
 use crate::{Result, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
@@ -33,6 +35,7 @@ pub struct Warp {
     depth: Buffer<f32>,
     items: Buffer<u32>,
     last: Option<LastFrame>,
+    stored: bool,
     levels: Buffer<PyramidLevel>,
     motions: Buffer<TexelMotion>,
     axes: Buffer<[f32; 2]>,
@@ -70,6 +73,7 @@ impl Warp {
             depth: Buffer::new(gpu, "warp.depth", area(size), Placement::Storage)?,
             items: Buffer::new(gpu, "warp.items", if dynamic { area(size) } else { 1 }, Placement::Storage)?,
             last: None,
+            stored: false,
             levels: Buffer::with_data(gpu, "warp.levels", &layout, Placement::Storage)?,
             motions: Buffer::new(gpu, "warp.motions", area(texels), Placement::Storage)?,
             axes: Buffer::with_data(gpu, "warp.axes", &[ALONG_X], Placement::Storage)?,
@@ -125,15 +129,20 @@ impl Warp {
         let Reprojections { camera, moving } = reprojections(last, world, view);
         self.reprojections.write(&moving)?;
         let dynamic = !moving.is_empty();
+        self.stored = dynamic || self.settings.stores_motion();
         self.measure_motion(f, camera, dynamic); // 1. where each pixel of the last frame goes
         self.orient_axes(f); // 2. along which axes motion is bounded best
-        self.bound_motion(f); // 3. the least and greatest motion of each region
+        self.bound_motion(f, camera); // 3. the least and greatest motion of each region
         self.tighten_bounds(f); // 4. where each tile's source can be
         self.search_depth(f, warped, camera, dynamic); // 5. what moves here, and the nearest of it
         Ok(())
     }
 
     fn measure_motion(&self, f: &mut Frame, camera: Reprojection, dynamic: bool) {
+        if !self.stored {
+            f.skip(warp::MeasureMotion::INFO.name, "computed where it is looked up: the camera alone moves");
+            return;
+        }
         let Settings { reduction, footprint, .. } = self.settings;
         let stage = warp::MeasureMotion {
             depth: self.depth.all(),
@@ -159,7 +168,8 @@ impl Warp {
         }
     }
 
-    fn bound_motion(&self, f: &mut Frame) {
+    fn bound_motion(&self, f: &mut Frame, camera: Reprojection) {
+        let Settings { reduction, oriented, fastest, .. } = self.settings;
         let tiles_at = |level: u32| {
             let PyramidLevel { width, height, .. } = self.layout[level as usize];
             [width, height]
@@ -171,9 +181,13 @@ impl Warp {
             levels,
             pyramid,
             axes: self.axes.all(),
+            depth: self.depth.all(),
+            camera,
             texels: self.texels,
             tiles,
-            constants: warp::BoundMotionConstants { oriented: self.settings.oriented },
+            size_px: self.size,
+            fastest,
+            constants: warp::BoundMotionConstants { oriented, stored: self.stored, reduction },
         };
         f.dispatch(first, tiles[0] * tiles[1]);
         for source_level in (REDUCED_LEVELS..self.coarsest).step_by(REDUCED_LEVELS as usize) {
@@ -199,7 +213,18 @@ impl Warp {
 
     fn search_depth(&self, f: &mut Frame, warped: BufferRef<f32>, camera: Reprojection, dynamic: bool) {
         let Settings {
-            seeds, iterations, threshold, tile, narrow, fill, oriented, footprint, reduction, margin, ..
+            seeds,
+            iterations,
+            threshold,
+            tile,
+            narrow,
+            fill,
+            oriented,
+            footprint,
+            reduction,
+            margin,
+            fastest,
+            ..
         } = self.settings;
         let stage = warp::SearchDepth {
             motions: self.motions.all(),
@@ -214,6 +239,7 @@ impl Warp {
             texels: self.texels,
             tiles: self.tiles,
             size_px: self.size,
+            fastest,
             constants: warp::SearchDepthConstants {
                 seeds,
                 iterations,
@@ -226,6 +252,7 @@ impl Warp {
                 dynamic,
                 reduction,
                 margin,
+                stored: self.stored,
             },
         };
         f.dispatch_over(stage, self.texels);
@@ -268,8 +295,17 @@ impl Warp {
         self.texels
     }
 
+    /// True if the last frame's motions were stored, and not computed where they were looked up.
+    pub fn has_motions(&self) -> bool {
+        self.stored
+    }
+
     /// Where each texel goes, read back; for pictures and tests.
+    ///
+    /// # Panics
+    /// Without [`Warp::has_motions`].
     pub fn read_motions(&self) -> Result<Vec<TexelMotion>> {
+        assert!(self.stored, "motions are read back where they are stored");
         Ok(self.motions.read()?)
     }
 

@@ -76,6 +76,16 @@ pub const MARGIN: OptionInfo = OptionInfo {
     help: "pixels around a footprint that count too: fewer errors, less culled",
 };
 
+/// Where motion comes from.
+pub const MOTION: OptionInfo = OptionInfo {
+    name: "motion",
+    default: "computed",
+    values: "computed|stored",
+    help:
+        "computed: from the depth of a texel, wherever it is looked up, if nothing but the camera moves and one pixel stands \
+         for a texel (full size, or erosion by footprint); stored: first all of it, in a buffer, as the papers do",
+};
+
 /// Filling of holes.
 const FILL: OptionInfo = OptionInfo {
     name: "fill",
@@ -85,8 +95,21 @@ const FILL: OptionInfo = OptionInfo {
 };
 
 /// Options of a warp on its own. Methods list those they have among their own, and say themselves how they erode and fill.
-pub const OPTIONS: &[OptionInfo] =
-    &[SIZE_OPTION, SEEDS, ITERATIONS, THRESHOLD, STEPS, TILE, NARROW, ORIENTED, LOOKUPS, FOOTPRINT, MARGIN, FILL];
+pub const OPTIONS: &[OptionInfo] = &[
+    SIZE_OPTION,
+    SEEDS,
+    ITERATIONS,
+    THRESHOLD,
+    STEPS,
+    TILE,
+    NARROW,
+    ORIENTED,
+    LOOKUPS,
+    FOOTPRINT,
+    MARGIN,
+    MOTION,
+    FILL,
+];
 
 /// The same, read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +139,8 @@ pub struct Settings {
     pub footprint: bool,
     /// Pixels around a footprint that count too.
     pub margin: u32,
+    /// Motion is always stored in a buffer first. Otherwise only where that pays.
+    pub stored: bool,
     /// Holes are filled from the extremes of the search bound: not conservative.
     pub fill: bool,
 }
@@ -137,8 +162,15 @@ impl Settings {
             fastest: 0.0,
             footprint: options.flag(FOOTPRINT.name),
             margin: options.number(MARGIN.name),
+            stored: options.text(MOTION.name) == "stored",
             fill: options.flag(FILL.name),
         }
+    }
+
+    /// True if motion is stored although nothing but the camera moves: it is asked for, a texel's motion takes all its pixels,
+    /// or the axes are found from all motions.
+    pub fn stores_motion(&self) -> bool {
+        self.stored || self.oriented || (self.reduction > 1 && !self.footprint)
     }
 }
 

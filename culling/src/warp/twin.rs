@@ -91,11 +91,12 @@ fn moved(
 ) -> TexelMotion {
     let m = Mat4::from_cols_array_2d(&reprojection.clip_from_last);
     let size = UVec2::from(size).as_vec2();
-    let place = (UVec2::from(pixel).as_vec2() + 0.5) / size * 2.0 - 1.0;
+    let place = (UVec2::from(pixel).as_vec2() + 0.5) * (2.0 / size) - 1.0;
     let clip: Vec4 = m.x_axis * place.x + m.y_axis * place.y + m.z_axis * here + m.w_axis;
-    let way = Vec2::new(clip.x, clip.y) / clip.w - place;
+    let over_w = 1.0 / clip.w;
+    let way = Vec2::new(clip.x, clip.y) * over_w - place;
     let offset = way * (0.5 * size / reduction as f32);
-    let depth = clip.z / clip.w;
+    let depth = clip.z * over_w;
     let far_squared = way.x * way.x + way.y * way.y + (depth - here) * (depth - here);
     let shows = clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 && offset.abs().cmplt(Vec2::splat(3.0e38)).all();
     if shows && (fastest == 0.0 || far_squared <= fastest * fastest) {

@@ -2,7 +2,7 @@
 
 use crate::farthest::hom::{LEVELS_OPTION, SIZE_OPTION, STRUCTURE_OPTION};
 use crate::pack::Commands;
-use crate::warp::{ITERATIONS, LOOKUPS, MARGIN, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
+use crate::warp::{ITERATIONS, LOOKUPS, MARGIN, MOTION, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
 use crate::world::SKIP_OPTION;
 use crate::{OptionInfo, Options};
 
@@ -75,6 +75,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     LOOKUPS,
     ERODE,
     MARGIN,
+    MOTION,
     CLOSE,
     RAPID,
     HYBRID,

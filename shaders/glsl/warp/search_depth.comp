@@ -14,7 +14,7 @@
 // fixed point: the border is not smeared over what comes into view beside it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "motion.glsl"
+#include "moved.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint SEEDS = 4u;
@@ -34,17 +34,19 @@ layout(constant_id = 8) const bool DYNAMIC = false;
 layout(constant_id = 9) const uint REDUCTION = 1u;
 // Pixels around a footprint that count too.
 layout(constant_id = 10) const uint MARGIN = 0u;
+// Motions are in the buffer; otherwise they are computed where they are looked up, as in warp/bound_motion.
+layout(constant_id = 11) const bool STORED = true;
 
 layout(set = 0, binding = 0, scalar) readonly buffer Motions { TexelMotion items[]; } motions;
 layout(set = 0, binding = 1, scalar) readonly buffer TileBounds { MotionBound items[]; } bounds;
 layout(set = 0, binding = 2, scalar) writeonly buffer Warped { float items[]; } warped;
 layout(set = 0, binding = 3, scalar) readonly buffer Axes { vec2 items[]; } axes;
-// What FOOTPRINT reads, as warp/measure_motion does.
+// What FOOTPRINT and motions that are not stored read, as warp/measure_motion does.
 layout(set = 0, binding = 4, scalar) readonly buffer Depth { float items[]; } last_depth;
 layout(set = 0, binding = 5, scalar) readonly buffer Items { uint items[]; } items;
 layout(set = 0, binding = 6, scalar) readonly buffer Slots { uint items[]; } slots;
 layout(set = 0, binding = 7, scalar) readonly buffer Reprojections { Reprojection items[]; } reprojections;
-layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 texels; uvec2 tiles; uvec2 size_px; } push;
+layout(push_constant, scalar) uniform Push { Reprojection camera; uvec2 texels; uvec2 tiles; uvec2 size_px; float fastest; } push;
 
 vec2 inside(vec2 place) {
     return clamp(place, vec2(0.5), vec2(push.texels) - 0.5);
@@ -52,7 +54,10 @@ vec2 inside(vec2 place) {
 
 TexelMotion motion_at(vec2 place) {
     uvec2 texel = uvec2(place);
-    return motions.items[texel.y * push.texels.x + texel.x];
+    if (STORED) return motions.items[texel.y * push.texels.x + texel.x];
+    uvec2 pixel = middle_pixel(texel, REDUCTION, push.size_px);
+    float here = last_depth.items[pixel.y * push.size_px.x + pixel.x];
+    return motion_of(push.camera, pixel, here, push.size_px, REDUCTION, push.fastest);
 }
 
 // The depth that a pixel of the last frame has in the new view; what has none there is far.
@@ -62,7 +67,7 @@ float new_depth(uvec2 pixel, float here) {
         uint slot = slots.items[items.items[pixel.y * push.size_px.x + pixel.x]];
         if (slot != 0u) m = reprojections.items[slot - 1u].clip_from_last;
     }
-    precise vec2 place = (vec2(pixel) + 0.5) / vec2(push.size_px) * 2.0 - 1.0;
+    precise vec2 place = (vec2(pixel) + 0.5) * (2.0 / vec2(push.size_px)) - 1.0;
     precise vec2 clip = vec2(m[0].z, m[0].w) * place.x + vec2(m[1].z, m[1].w) * place.y + vec2(m[2].z, m[2].w) * here
         + vec2(m[3].z, m[3].w);
     precise float depth = clip.x / clip.y;

@@ -106,7 +106,7 @@ fn farthest_around(last: &LastDepth<'_>, source: Vec2, found: f32) -> f32 {
 
 fn new_depth(last: &LastDepth<'_>, pixel: UVec2, here: f32) -> f32 {
     let m = Mat4::from_cols_array_2d(&last.reprojection_at(pixel.x, pixel.y).clip_from_last);
-    let place = (pixel.as_vec2() + 0.5) / UVec2::from(last.depth.size).as_vec2() * 2.0 - 1.0;
+    let place = (pixel.as_vec2() + 0.5) * (2.0 / UVec2::from(last.depth.size).as_vec2()) - 1.0;
     let clip = m.x_axis * place.x + m.y_axis * place.y + m.z_axis * here + m.w_axis;
     let depth = clip.z / clip.w;
     if clip.w > 0.0 && depth > DEPTH_FAR && depth <= 1.0 {
