@@ -98,8 +98,11 @@ pub(super) const TABLE_5: Table = Table {
     notes: &[ERODED, SLOWER],
 };
 
+/// With the motion buffer, as in the paper: table 6 times its making.
+const STORED_MOTION: &[(&str, &str)] = &[("seeds", "8"), ("motion", "stored")];
+
 const fn stages(head: &'static str, shows: &'static [Measure]) -> Column {
-    Column::new(head, "woc", shows, 2).with(EIGHT_SEEDS)
+    Column::new(head, "woc", shows, 2).with(STORED_MOTION)
 }
 
 /// Table 6.
