@@ -53,7 +53,7 @@ impl Stage for CastRays {
             BindingInfo { name: "touched", binding: 7, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
         push_size: 4,
-        constants: &[ConstantInfo { name: "COUNT", id: 0 }],
+        constants: &[ConstantInfo { name: "COUNT", id: 0 }, ConstantInfo { name: "DETAIL", id: 1 }],
         local_size: [0, 0, 0],
         vertex: &[],
         vertex_stride: 0,
@@ -75,7 +75,7 @@ impl Stage for CastRays {
                 self.touched.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.count)],
+            vec![u32::from(self.constants.count), u32::from(self.constants.detail)],
         )
     }
 }
@@ -98,12 +98,14 @@ const _: () = {
 pub struct CastRaysConstants {
     /// Count rays, node visits and rays stopped early: for tables, never in timed frames.
     pub count: bool,
+    /// What is small on the screen is left out: otherwise rays need not ask.
+    pub detail: bool,
 }
 
 impl Default for CastRaysConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { count: false }
+        Self { count: false, detail: false }
     }
 }
 
@@ -176,7 +178,7 @@ impl Stage for CullGroups {
             BindingInfo { name: "hits", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "touched", binding: 9, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
-        push_size: 108,
+        push_size: 112,
         constants: &[ConstantInfo { name: "COHERENT", id: 0 }],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -218,9 +220,9 @@ struct CullGroupsPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(CullGroupsPush, view) == 0);
-    assert!(std::mem::offset_of!(CullGroupsPush, frame) == 100);
-    assert!(std::mem::offset_of!(CullGroupsPush, list) == 104);
-    assert!(size_of::<CullGroupsPush>() == 108);
+    assert!(std::mem::offset_of!(CullGroupsPush, frame) == 104);
+    assert!(std::mem::offset_of!(CullGroupsPush, list) == 108);
+    assert!(size_of::<CullGroupsPush>() == 112);
 };
 
 /// Specialization constants of [`CullGroups`].

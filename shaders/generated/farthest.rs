@@ -175,7 +175,7 @@ impl Stage for TestBounds {
             BindingInfo { name: "texels", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "visible", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 120,
+        push_size: 124,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -206,7 +206,7 @@ struct TestBoundsPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(TestBoundsPush, view) == 0);
-    assert!(std::mem::offset_of!(TestBoundsPush, shape) == 100);
-    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 116);
-    assert!(size_of::<TestBoundsPush>() == 120);
+    assert!(std::mem::offset_of!(TestBoundsPush, shape) == 104);
+    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 120);
+    assert!(size_of::<TestBoundsPush>() == 124);
 };

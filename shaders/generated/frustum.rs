@@ -30,7 +30,7 @@ impl Stage for TestBounds {
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "kept", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 104,
+        push_size: 108,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -55,6 +55,6 @@ struct TestBoundsPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(TestBoundsPush, view) == 0);
-    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 100);
-    assert!(size_of::<TestBoundsPush>() == 104);
+    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 104);
+    assert!(size_of::<TestBoundsPush>() == 108);
 };

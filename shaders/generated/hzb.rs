@@ -155,7 +155,7 @@ impl Stage for TestBounds {
             BindingInfo { name: "seen", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
             BindingInfo { name: "newly", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 108,
+        push_size: 112,
         constants: &[ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 }],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -187,9 +187,9 @@ struct TestBoundsPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(TestBoundsPush, view) == 0);
-    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 100);
-    assert!(std::mem::offset_of!(TestBoundsPush, coarsest_level) == 104);
-    assert!(size_of::<TestBoundsPush>() == 108);
+    assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 104);
+    assert!(std::mem::offset_of!(TestBoundsPush, coarsest_level) == 108);
+    assert!(size_of::<TestBoundsPush>() == 112);
 };
 
 /// Specialization constants of [`TestBounds`].

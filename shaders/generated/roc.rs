@@ -258,7 +258,7 @@ impl Stage for MeasureBoxes {
             BindingInfo { name: "depths", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "farthest", binding: 4, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
-        push_size: 120,
+        push_size: 124,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -289,9 +289,9 @@ struct MeasureBoxesPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(MeasureBoxesPush, view) == 0);
-    assert!(std::mem::offset_of!(MeasureBoxesPush, depth_plane) == 100);
-    assert!(std::mem::offset_of!(MeasureBoxesPush, object_count) == 116);
-    assert!(size_of::<MeasureBoxesPush>() == 120);
+    assert!(std::mem::offset_of!(MeasureBoxesPush, depth_plane) == 104);
+    assert!(std::mem::offset_of!(MeasureBoxesPush, object_count) == 120);
+    assert!(size_of::<MeasureBoxesPush>() == 124);
 };
 
 /// Which objects must prove by their box that they are hidden? All in the view volume that were not drawn
@@ -326,7 +326,7 @@ impl Stage for SelectBoxes {
             BindingInfo { name: "boxes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "newly", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 104,
+        push_size: 108,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -356,8 +356,8 @@ struct SelectBoxesPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(SelectBoxesPush, view) == 0);
-    assert!(std::mem::offset_of!(SelectBoxesPush, object_count) == 100);
-    assert!(size_of::<SelectBoxesPush>() == 104);
+    assert!(std::mem::offset_of!(SelectBoxesPush, object_count) == 104);
+    assert!(size_of::<SelectBoxesPush>() == 108);
 };
 
 /// The boxes of objects not drawn yet, against the depth of those that were. No colour, no depth is written

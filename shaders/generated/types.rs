@@ -155,10 +155,10 @@ pub struct BoxView {
 
 const _: () = {
     assert!(std::mem::offset_of!(BoxView, view) == 0);
-    assert!(std::mem::offset_of!(BoxView, eye) == 100);
-    assert!(std::mem::offset_of!(BoxView, origin) == 116);
-    assert!(std::mem::offset_of!(BoxView, direction) == 152);
-    assert!(size_of::<BoxView>() == 188);
+    assert!(std::mem::offset_of!(BoxView, eye) == 104);
+    assert!(std::mem::offset_of!(BoxView, origin) == 120);
+    assert!(std::mem::offset_of!(BoxView, direction) == 156);
+    assert!(size_of::<BoxView>() == 192);
 };
 
 /// A view as bounds tests need it: the matrix, the target's size and how exactly the device snaps vertices.
@@ -177,6 +177,8 @@ pub struct CullView {
     pub height_px: u32,
     /// The device rounds vertex positions to this grid, pixels.
     pub snap_px: f32,
+    /// What is smaller on the screen is left out; 0 leaves out nothing.
+    pub detail_px: f32,
 }
 
 const _: () = {
@@ -186,7 +188,8 @@ const _: () = {
     assert!(std::mem::offset_of!(CullView, width_px) == 88);
     assert!(std::mem::offset_of!(CullView, height_px) == 92);
     assert!(std::mem::offset_of!(CullView, snap_px) == 96);
-    assert!(size_of::<CullView>() == 100);
+    assert!(std::mem::offset_of!(CullView, detail_px) == 100);
+    assert!(size_of::<CullView>() == 104);
 };
 
 /// VkDrawIndexedIndirectCommand. first_instance is the object's index.

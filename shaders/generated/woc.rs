@@ -183,7 +183,7 @@ impl Stage for HoldCandidates {
             BindingInfo { name: "listed", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "command", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 104,
+        push_size: 108,
         constants: &[],
         local_size: [1, 1, 1],
         vertex: &[],
@@ -219,8 +219,8 @@ struct HoldCandidatesPush {
 
 const _: () = {
     assert!(std::mem::offset_of!(HoldCandidatesPush, view) == 0);
-    assert!(std::mem::offset_of!(HoldCandidatesPush, candidate_count) == 100);
-    assert!(size_of::<HoldCandidatesPush>() == 104);
+    assert!(std::mem::offset_of!(HoldCandidatesPush, candidate_count) == 104);
+    assert!(size_of::<HoldCandidatesPush>() == 108);
 };
 
 /// What was drawn first need not be drawn again, and is visible whatever the test says of it (Kim 2015, IV.1).

@@ -230,7 +230,7 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         label: contender.label(),
         method: contender.entry.id.to_owned(),
         options,
-        guarantee: contender.entry.guarantee.to_string(),
+        guarantee: contender.guarantee().to_string(),
         frame_ms: FrameMs::from_samples(&frame_ms).unwrap_or_default(),
         host_ms: stats::median(&host_ms),
         stages: stages(&records.timed),

@@ -15,6 +15,8 @@ use crate::tables::TABLES;
 use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use culling::world::DETAIL_OPTION;
+use culling::METHODS;
 use engine::{GpuOptions, TimerMode};
 use scenes::SceneOptions;
 use std::path::PathBuf;
@@ -129,6 +131,19 @@ pub struct MethodChoice {
     /// Sets a method's option; may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
     pub set: Vec<String>,
+    /// Leave out what is smaller on the screen than PX pixels, in all methods but none and ref: their option `detail`
+    #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "table")]
+    pub detail: u32,
+}
+
+impl MethodChoice {
+    /// What is set: `--detail` for every method that has it, then each `--set`.
+    pub fn sets(&self) -> Vec<String> {
+        let has_it = |entry: &&culling::Entry| entry.options.contains(&DETAIL_OPTION);
+        let detailed =
+            METHODS.iter().filter(has_it).map(|entry| format!("{}.{}={}", entry.id, DETAIL_OPTION.name, self.detail));
+        detailed.filter(|_| self.detail > 0).chain(self.set.iter().cloned()).collect()
+    }
 }
 
 /// `sightline bench`.

@@ -3,7 +3,8 @@
 use crate::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::session::Session;
 use anyhow::{Context, Result};
-use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, Work};
+use culling::world::DETAIL_OPTION;
+use culling::{drawn_objects, Drawn, Entry, Guarantee, Method, Options, Setup, View, VisibleSets, Work};
 use engine::FrameReport;
 use std::sync::Arc;
 
@@ -55,6 +56,16 @@ impl Contender {
         self.options.label()
     }
 
+    /// What it promises, with these options.
+    pub fn guarantee(&self) -> Guarantee {
+        match self.entry.guarantee {
+            Guarantee::Exact if self.options.number(DETAIL_OPTION.name) > 0 => {
+                Guarantee::Approximate("small things are left out")
+            }
+            promised => promised,
+        }
+    }
+
     /// Runs one frame as it is timed: without the item buffer.
     pub fn timed(&mut self, session: &mut Session, frame: usize) -> Result<FrameReport> {
         let view = session.look(frame)?;
@@ -81,6 +92,7 @@ impl Contender {
 
     /// Runs one frame through a view, with or without the item buffer.
     pub fn run(&mut self, session: &Session, view: &View, items: bool) -> Result<FrameReport> {
+        let view = &view.without_details(self.options.number(DETAIL_OPTION.name) as f32);
         self.method.prepare(&session.world, view)?;
         let target = if items || self.method.needs_items(&session.world, view) {
             session.targets.with_items()

@@ -60,6 +60,7 @@ struct Eovc {
     read_back: bool,
     frame: u32,
     counting: bool,
+    leaves_out_details: bool,
     now: usize,
     still: Still,
 }
@@ -90,6 +91,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         read_back: options.flag("cr"),
         frame: FIRST_FRAME,
         counting: false,
+        leaves_out_details: false,
         now: 0,
         still: Still::new(options).settled_after(SETTLED_AFTER),
         tree,
@@ -116,6 +118,7 @@ impl Method for Eovc {
         }
         self.tree.follow(world)?;
         self.groups.groups.look(view)?;
+        self.leaves_out_details = view.detail_px() > 0.0;
         self.now = 1 - self.now;
         self.frame += 1;
         self.map_occluders(f, world, view, target)?; // 1. occlusion mapping
@@ -251,7 +254,7 @@ impl Eovc {
             depth: target.depth,
             touched: self.groups.touched.all(),
             frame: self.frame,
-            constants: eovc::CastRaysConstants { count: self.counting },
+            constants: eovc::CastRaysConstants { count: self.counting, detail: self.leaves_out_details },
         };
         f.test_boxes(cast, self.open_boxes.draw(), &target.test_only());
     }

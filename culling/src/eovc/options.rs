@@ -7,6 +7,7 @@ use scenes::bvh::Split;
 /// How the hierarchy is split, which groups are opened before they are rasterised, and the thesis' accelerations (III.6).
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
+    crate::world::DETAIL_OPTION,
     OptionInfo {
         name: "of",
         default: "true",

@@ -2,7 +2,7 @@
 //! `scenes::bvh`.
 
 use crate::boxes::twin::{crosses_near, grown};
-use crate::frustum::twin::{clip_from_bounds, footprint_widening, outside_frustum};
+use crate::frustum::twin::{clip_from_bounds, left_out};
 use scenes::bvh::{Bvh, NO_NODE};
 use shaders::types::{CullView, TreeNode, ITEM_NONE, OBJECT_ALWAYS_KEPT, RAY_OBJECTS};
 
@@ -55,7 +55,7 @@ pub fn cull_groups(
         let node = &nodes[index as usize];
         let (clip, flags) = (clip_from_bounds(&node.bounds, view), node.bounds.flags);
         let kept = flags & OBJECT_ALWAYS_KEPT != 0;
-        if !kept && outside_frustum(&clip, footprint_widening(flags, view)) {
+        if !kept && left_out(&clip, flags, view) {
             continue;
         }
         let shows = kept || nothing_hides || crosses_near(&clip_from_bounds(&grown(&node.bounds, view), view));

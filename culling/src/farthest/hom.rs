@@ -10,7 +10,8 @@ use engine::{Buffer, Frame, Gpu, Placement, Target};
 use shaders::{draw, farthest, frustum, Stage};
 
 /// `skip`, and what the map is made of.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION, STRUCTURE_OPTION, LEVELS_OPTION, SIZE_OPTION];
+pub const OPTIONS: &[OptionInfo] =
+    &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION, STRUCTURE_OPTION, LEVELS_OPTION, SIZE_OPTION];
 
 /// How the map keeps the farthest depths of large regions.
 pub const STRUCTURE_OPTION: OptionInfo = OptionInfo {

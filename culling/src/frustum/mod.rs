@@ -9,7 +9,7 @@ use engine::{Buffer, Frame, Placement, Target};
 use shaders::frustum;
 
 /// `skip`: leave out what cannot change the result.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION];
+pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION];
 
 struct Frustum {
     kept: Buffer<u32>,

@@ -62,11 +62,27 @@ pub fn outside_frustum(clip: &ClipBox, widen: [f32; 2]) -> bool {
     planes(widen).iter().any(|plane| farthest_along(clip, *plane) < 0.0)
 }
 
+/// True if all that a box may hold is smaller on the screen than is asked for. Twin of `too_small`.
+pub fn too_small(clip: &ClipBox, view: &CullView) -> bool {
+    let arms: [f32; 4] =
+        std::array::from_fn(|i| clip.axes[0][i].abs() + clip.axes[1][i].abs() + clip.axes[2][i].abs() + clip.error[i]);
+    let w_low = clip.centre[3] - arms[3];
+    let across = |axis: usize, size: u32| {
+        (arms[axis] + (clip.centre[axis] / clip.centre[3]).abs() * arms[3]) / w_low * size as f32
+    };
+    w_low > 0.0 && across(0, view.width_px).max(across(1, view.height_px)) < view.detail_px
+}
+
+/// True if nothing in a box is to be drawn, whatever hides it. Twin of `left_out`.
+pub fn left_out(clip: &ClipBox, flags: u32, view: &CullView) -> bool {
+    outside_frustum(clip, footprint_widening(flags, view)) || too_small(clip, view)
+}
+
 /// Which objects are kept: 1 or 0 each. Twin of `frustum/test_bounds`.
 pub fn test_bounds(bounds: &[Bounds], view: &CullView) -> Vec<u32> {
     let kept = |bound: &Bounds| {
         let always = bound.flags & OBJECT_ALWAYS_KEPT != 0;
-        always || !outside_frustum(&clip_from_bounds(bound, view), footprint_widening(bound.flags, view))
+        always || !left_out(&clip_from_bounds(bound, view), bound.flags, view)
     };
     bounds.iter().map(|bound| u32::from(kept(bound))).collect()
 }

@@ -15,6 +15,7 @@ use shaders::{hzb, Stage};
 /// `skip`, and `texels`: how many texels a footprint may touch in each direction before a coarser level is taken.
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
+    crate::world::DETAIL_OPTION,
     OptionInfo {
         name: "texels",
         default: "4",

@@ -1,6 +1,6 @@
 //! The hierarchical-Z stages in plain Rust: their definition.
 
-use crate::frustum::twin::{clip_from_bounds, farthest_along, footprint_widening, outside_frustum, ClipBox};
+use crate::frustum::twin::{clip_from_bounds, farthest_along, left_out, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
     Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS,
@@ -137,7 +137,7 @@ pub fn is_visible(bounds: &Bounds, view: &CullView, pyramid: &PyramidTest<'_>) -
         return true;
     }
     let clip = clip_from_bounds(bounds, view);
-    if outside_frustum(&clip, footprint_widening(bounds.flags, view)) {
+    if left_out(&clip, bounds.flags, view) {
         return false;
     }
     let footprint = footprint_of(&clip, view, bounds.flags);

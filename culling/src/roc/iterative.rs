@@ -13,6 +13,7 @@ use shaders::{roc, Stage};
 /// How many ranges there are, how they are cut, and what lies past them.
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
+    crate::world::DETAIL_OPTION,
     OptionInfo {
         name: "ranges",
         default: "6",

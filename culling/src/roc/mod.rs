@@ -16,7 +16,7 @@ use engine::{Buffer, Frame, Placement, Target};
 use shaders::{roc, Stage};
 
 /// `skip`: leave out what cannot change the result.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION];
+pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION];
 
 /// Frames of an unchanged view after which the lists hold: what is hidden leaves the early list one frame after it is drawn,
 /// and what it had let through may leave in the next two.

@@ -2,7 +2,7 @@
 
 use super::Cuts;
 use crate::boxes::twin::{crosses_near, grown};
-use crate::frustum::twin::{clip_from_bounds, footprint_widening, outside_frustum};
+use crate::frustum::twin::{clip_from_bounds, left_out};
 use crate::pack::twin as pack;
 use glam::Vec3;
 use shaders::types::*;
@@ -15,7 +15,7 @@ pub fn selection(bound: &Bounds, seen: u32, view: &CullView) -> u32 {
     if bound.flags & OBJECT_ALWAYS_KEPT != 0 {
         return SELECT_SHOWN;
     }
-    if outside_frustum(&clip_from_bounds(bound, view), footprint_widening(bound.flags, view)) {
+    if left_out(&clip_from_bounds(bound, view), bound.flags, view) {
         return SELECT_NONE;
     }
     let reaches_near = crosses_near(&clip_from_bounds(&grown(bound, view), view));
@@ -49,7 +49,7 @@ pub fn measure_boxes(
         let is_kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
         let depth = if is_kept { 0.0 } else { depth_of(bound, view, depth_plane) };
         let in_view = match selects {
-            SELECT_SEEN => !outside_frustum(&clip_from_bounds(bound, view), footprint_widening(bound.flags, view)),
+            SELECT_SEEN => !left_out(&clip_from_bounds(bound, view), bound.flags, view),
             other => other != SELECT_NONE,
         };
         if in_view {

@@ -3,7 +3,7 @@
 use crate::farthest::hom::{LEVELS_OPTION, SIZE_OPTION, STRUCTURE_OPTION};
 use crate::pack::Commands;
 use crate::warp::{ITERATIONS, LOOKUPS, MARGIN, MOTION, NARROW, ORIENTED, SEEDS, STEPS, THRESHOLD, TILE};
-use crate::world::SKIP_OPTION;
+use crate::world::{DETAIL_OPTION, SKIP_OPTION};
 use crate::{OptionInfo, Options};
 
 /// How much smaller warp and map are than the picture: a quarter, by measurement, which is faster than full size and misses
@@ -62,6 +62,7 @@ pub(super) const COMMANDS: OptionInfo = OptionInfo {
 /// `skip`, what the occlusion map is made of, how it is warped, and the refinements.
 pub const OPTIONS: &[OptionInfo] = &[
     SKIP_OPTION,
+    DETAIL_OPTION,
     SIZE,
     STRUCTURE_OPTION,
     LEVELS_OPTION,

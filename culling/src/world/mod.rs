@@ -8,7 +8,7 @@ mod upload;
 mod view;
 
 pub use drawn::{drawn_objects, Drawn};
-pub use still::{Still, SKIP_OPTION};
+pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};

@@ -11,6 +11,14 @@ pub const SKIP_OPTION: OptionInfo = OptionInfo {
     help: "leave out stages that cannot change the result",
 };
 
+/// The option of every method that tests bounds: who makes the frame's [`View`](crate::View) reads it.
+pub const DETAIL_OPTION: OptionInfo = OptionInfo {
+    name: "detail",
+    default: "0",
+    values: "0..=1000",
+    help: "leave out what is smaller on the screen than so many pixels, hidden or not: errors for time; 0 leaves out nothing",
+};
+
 /// Remembers what the last frames looked at.
 pub struct Still {
     enabled: bool,

@@ -17,6 +17,7 @@ pub struct View {
     pub frame: usize,
     clip_from_relative: DMat4,
     snap_px: f32,
+    detail_px: f32,
 }
 
 impl View {
@@ -25,7 +26,18 @@ impl View {
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         let view_from_relative = DMat4::from_quat(shot.pose.rotation.conjugate());
         let clip_from_relative = shot.projection.clip_from_view(aspect) * view_from_relative;
-        View { pose: shot.pose, projection: shot.projection, size, frame, clip_from_relative, snap_px }
+        View { pose: shot.pose, projection: shot.projection, size, frame, clip_from_relative, snap_px, detail_px: 0.0 }
+    }
+
+    /// The same, of which methods leave out what is smaller on the screen than so many pixels a side: detail culling (Zachmann 2008).
+    /// 0 leaves out nothing. Methods that go on drawing what they saw leave it out from when it is seen no more.
+    pub fn without_details(self, smaller_than_px: f32) -> Self {
+        View { detail_px: smaller_than_px, ..self }
+    }
+
+    /// What is smaller on the screen, in pixels, is left out.
+    pub fn detail_px(&self) -> f32 {
+        self.detail_px
     }
 
     /// Clip space from world positions relative to the camera, as computed on the host.
@@ -52,7 +64,8 @@ impl View {
     pub fn cull(&self) -> types::CullView {
         let types::View { clip_from_relative, camera_high, camera_low } = self.gpu();
         let [width_px, height_px] = self.size;
-        types::CullView { clip_from_relative, camera_high, camera_low, width_px, height_px, snap_px: self.snap_px }
+        let View { snap_px, detail_px, .. } = *self;
+        types::CullView { clip_from_relative, camera_high, camera_low, width_px, height_px, snap_px, detail_px }
     }
 }
 

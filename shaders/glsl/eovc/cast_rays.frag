@@ -8,6 +8,8 @@
 layout(early_fragment_tests) in;
 // Count rays, node visits and rays stopped early: for tables, never in timed frames.
 layout(constant_id = 0) const bool COUNT = false;
+// What is small on the screen is left out: otherwise rays need not ask.
+layout(constant_id = 1) const bool DETAIL = false;
 
 layout(location = 0) flat in uint group;
 layout(location = 1) flat in float nearest;
@@ -74,6 +76,7 @@ void main() {
         visits++;
         TreeNode here = nodes.items[node];
         bool descend = full.items[node] != push.frame && meets(ray, here.bounds, view, growth);
+        if (DETAIL) descend = descend && !too_small(clip_from_bounds(here.bounds, view), view);
         if (descend) touched.items[node] = push.frame;
         if (descend && here.is_leaf != 0u) {
             note_hit(node, here.first_child);

@@ -32,7 +32,7 @@ layout(push_constant, scalar) uniform Push { CullView view; uint frame; uint lis
 bool sort_out(uint node, TreeNode here) {
     ClipBox box = clip_from_bounds(here.bounds, push.view);
     bool kept = (here.bounds.flags & OBJECT_ALWAYS_KEPT) != 0u;
-    if (!kept && outside_frustum(box, footprint_widening(here.bounds.flags, push.view))) return false;
+    if (!kept && left_out(box, here.bounds.flags, push.view)) return false;
     bool nothing_hides = length_of(MARKED_LIST) == 0u;
     bool reaches_near = kept || crosses_near(clip_from_bounds(grown(here.bounds, push.view), push.view));
     if (here.is_leaf != 0u) {

@@ -16,6 +16,6 @@ void main() {
     Bounds bound = bounds.items[object];
     bool outside = false;
     if ((bound.flags & OBJECT_ALWAYS_KEPT) == 0u)
-        outside = outside_frustum(clip_from_bounds(bound, push.view), footprint_widening(bound.flags, push.view));
+        outside = left_out(clip_from_bounds(bound, push.view), bound.flags, push.view);
     kept.items[object] = outside ? 0u : 1u;
 }

@@ -36,7 +36,7 @@ bool hidden_by_pyramid(Footprint footprint) {
 bool is_visible(Bounds bound) {
     if ((bound.flags & OBJECT_ALWAYS_KEPT) != 0u) return true;
     ClipBox box = clip_from_bounds(bound, push.view);
-    if (outside_frustum(box, footprint_widening(bound.flags, push.view))) return false;
+    if (left_out(box, bound.flags, push.view)) return false;
     Footprint footprint = footprint_of(box, push.view, bound.flags);
     if (footprint.crosses_near) return true;
     return !footprint.empty && !hidden_by_pyramid(footprint);

@@ -51,8 +51,23 @@ bool outside_frustum(ClipBox box, vec2 widen) {
         || farthest_along(box, vec4(0.0, 0.0, 1.0, 0.0)) < 0.0 || farthest_along(box, vec4(0.0, 0.0, -1.0, 1.0)) < 0.0;
 }
 
+// True if all that the box may hold is smaller on the screen, in both directions, than is asked for: detail culling (Zachmann
+// 2008). With c the centre, a the arms of the box by axis and w' the least w in it: |x/w - cx/cw| <= (ax + |cx/cw| aw) / w'.
+// A box that reaches the eye's plane is large.
+bool too_small(ClipBox box, CullView view) {
+    vec4 arms = abs(box.axis_x) + abs(box.axis_y) + abs(box.axis_z) + box.error;
+    float w_low = box.centre.w - arms.w;
+    vec2 across = (arms.xy + abs(box.centre.xy / box.centre.w) * arms.w) / w_low * vec2(view.width_px, view.height_px);
+    return w_low > 0.0 && max(across.x, across.y) < view.detail_px;
+}
+
 // How much of the half picture an object's footprint may reach beyond its geometry, plus one.
 vec2 footprint_widening(uint flags, CullView view) {
     return (flags & OBJECT_WIDE_RASTER) != 0u ? vec2(1.0) + 2.0 / vec2(view.width_px, view.height_px) : vec2(1.0);
+}
+
+// True if nothing in the box is to be drawn, whatever hides it.
+bool left_out(ClipBox box, uint flags, CullView view) {
+    return outside_frustum(box, footprint_widening(flags, view)) || too_small(box, view);
 }
 #endif

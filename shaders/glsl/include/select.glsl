@@ -13,7 +13,7 @@ const uint SELECT_SHOWN = 3u;   // drawn without a test
 uint selection(Bounds bound, bool seen, CullView view) {
     if (seen) return SELECT_SEEN;
     if ((bound.flags & OBJECT_ALWAYS_KEPT) != 0u) return SELECT_SHOWN;
-    if (outside_frustum(clip_from_bounds(bound, view), footprint_widening(bound.flags, view))) return SELECT_NONE;
+    if (left_out(clip_from_bounds(bound, view), bound.flags, view)) return SELECT_NONE;
     return crosses_near(clip_from_bounds(grown(bound, view), view)) ? SELECT_SHOWN : SELECT_TESTED;
 }
 

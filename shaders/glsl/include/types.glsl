@@ -76,6 +76,7 @@ struct CullView {
     uint width_px;
     uint height_px;
     float snap_px;      // the device rounds vertex positions to this grid, pixels
+    float detail_px;    // what is smaller on the screen is left out; 0 leaves out nothing
 };
 
 // Where a level of the farthest-depth pyramid lies in its buffer.

@@ -40,7 +40,7 @@ void main() {
     selected.items[object] = selects;
     depths.items[object] = depth;
     bool in_view = selects == SELECT_SEEN
-        ? !outside_frustum(clip_from_bounds(bound, push.view), footprint_widening(bound.flags, push.view))
+        ? !left_out(clip_from_bounds(bound, push.view), bound.flags, push.view)
         : selects != SELECT_NONE;
     // What the last frame saw counts like the rest, so that the ranges of a view do not depend on its history. The look
     // before the atomic may be out of date, but never too large; without it all objects queue for one word.

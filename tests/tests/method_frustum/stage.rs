@@ -90,6 +90,30 @@ fn boxes_are_kept_as_twin_and_oracle_say() {
 }
 
 #[test]
+fn what_is_left_out_as_too_small_is_what_the_twin_leaves_out() {
+    let gpu = gpu();
+    let mut random = Random::new(22);
+    let (mut left_out, mut differ, mut all) = (0, 0, 0);
+    for (_, projection) in special_projections() {
+        let pose = Pose { position: random.vector(), rotation: random.turn() };
+        let shot = Shot { pose, projection, seconds: 0.0 };
+        let view = View::new(&shot, [161, 97], 0, gpu.snap_px());
+        let bounds = boxes(&mut random, &shot, &view);
+        let (whole, detailed) = (view.cull(), view.without_details(9.0).cull());
+        let (kept, without) = (run(&gpu, &bounds, whole), run(&gpu, &bounds, detailed));
+        let twin = twin::test_bounds(&bounds, &detailed);
+        for index in 0..bounds.len() {
+            assert!(without[index] <= kept[index], "{:?} is kept because it is small", bounds[index]);
+            left_out += kept[index] - without[index];
+            differ += usize::from(without[index] != twin[index]);
+            all += 1;
+        }
+    }
+    assert!(left_out as usize > all / 10, "hardly any box is small: {left_out} of {all}");
+    assert!(differ < all / 100, "stage and twin differ in {differ} of {all}");
+}
+
+#[test]
 fn boxes_without_a_meaning_are_kept() {
     let gpu = gpu();
     let shot = harness::worlds::shot(glam::DVec3::ZERO, glam::DVec3::NEG_Z, harness::worlds::PERSPECTIVE);

@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Runs the benchmark, writes its files and prints its table.
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
-    let methods = parse_methods(&arguments.methods.method, &arguments.methods.set)?;
+    let methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
     make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;

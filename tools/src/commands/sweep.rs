@@ -48,7 +48,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
 
 fn plan(arguments: &BenchArgs) -> Result<SweepPlan> {
     let methods = if arguments.methods.method == "all" { "ref" } else { &arguments.methods.method };
-    let sets = &arguments.methods.set;
+    let sets = &arguments.methods.sets();
     let base = parse_methods(methods, sets)?;
     let sweeps = arguments.sweeps.sweep.iter().flat_map(|text| text.split_whitespace());
     let sweeps = sweeps.map(Sweep::parse).collect::<Result<Vec<_>>>()?;

@@ -1,12 +1,14 @@
 //! Settings of methods by chance: each option has many values, and a bug may need two of them at once.
 
 use super::{Random, Subject};
+use culling::world::DETAIL_OPTION;
 
 /// The same method with every option at a value by chance: one of those listed, or, of a range, one near its ends or the
 /// default. Options of another kind keep theirs.
 pub fn by_chance(subject: &Subject, random: &mut Random) -> Subject {
     let mut subject = subject.clone();
-    for option in subject.options.known() {
+    // Whoever leaves out details asks for errors.
+    for option in subject.options.known().iter().filter(|option| **option != DETAIL_OPTION) {
         let values = choices(option.values, option.default);
         // Values come from the option's own list; one that it refuses all the same leaves the default.
         let _ = subject.options.set(option.name, &values[random.below(values.len())]);
@@ -44,7 +46,7 @@ mod tests {
                     seen.entry(name).or_default().insert(value);
                 }
             }
-            for option in entry.options {
+            for option in entry.options.iter().filter(|option| **option != DETAIL_OPTION) {
                 let tried = &seen[option.name];
                 assert!(tried.len() >= 2, "{}.{}: only {tried:?}", entry.id, option.name);
                 let mut fresh = entry.default_options();
