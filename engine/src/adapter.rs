@@ -1,5 +1,6 @@
 //! Which device: listing, features, choice.
 
+use crate::depth::DepthFormat;
 use crate::error::Named;
 use crate::instance::Instance;
 use crate::{Error, Result};
@@ -96,6 +97,27 @@ pub(crate) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<(vk::P
         return Err(Error::MissingFeatures { device: info.name, missing: info.missing.join(", ") });
     }
     Ok((device, info))
+}
+
+/// An error if the device cannot draw to and read depth of that format.
+pub(crate) fn check_depth(
+    instance: &Instance,
+    device: vk::PhysicalDevice,
+    info: &AdapterInfo,
+    depth: DepthFormat,
+) -> Result<()> {
+    // SAFETY: the device handle comes from this instance.
+    let found = unsafe { instance.raw.get_physical_device_format_properties(device, depth.vulkan()) };
+    let needed = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT
+        | vk::FormatFeatureFlags::SAMPLED_IMAGE
+        | vk::FormatFeatureFlags::TRANSFER_SRC;
+    if found.optimal_tiling_features.contains(needed) {
+        return Ok(());
+    }
+    Err(Error::MissingFeatures {
+        device: info.name.clone(),
+        missing: format!("depth buffers of {depth} that can be read"),
+    })
 }
 
 fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> AdapterInfo {

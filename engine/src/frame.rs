@@ -1,5 +1,6 @@
 //! One frame: recorded stage by stage, run, timed.
 
+use crate::depth::DepthFormat;
 use crate::gpu::{Gpu, Vulkan};
 use crate::image::{Format, Target};
 use crate::lost;
@@ -8,7 +9,7 @@ use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
 use crate::timers::{Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
-use shaders::{Bound, BufferRef, ComputeStage, GraphicsStage, ImageRef};
+use shaders::{engine, Bound, BufferRef, ComputeStage, GraphicsStage, ImageRef, Stage};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -167,12 +168,26 @@ impl Frame {
         self.recorder.push(label, Op::Copy { from: from.into(), to: to.into() });
     }
 
-    /// Keeps the target's depth beyond the frame: a float a pixel, row by row from the top.
+    /// Keeps the target's depth beyond the frame: a float a pixel, reversed, row by row from the top.
     ///
     /// # Panics
     /// If the buffer has no room for it.
     pub fn copy_depth(&mut self, label: &str, target: &Target, to: &Buffer<f32>) {
-        self.copy_image(label, target.depth, Format::Depth, target.size, to);
+        let depth = self.gpu.depth();
+        if depth == DepthFormat::ReversedD32 {
+            self.copy_image(label, target.depth, Format::Depth, target.size, to);
+            return;
+        }
+        let [width, height] = target.size;
+        assert!(
+            to.len() >= width as usize * height as usize,
+            "{label}: {} words for {width}x{height} texels",
+            to.len()
+        );
+        let constants = engine::CopyDepthConstants { standard_depth: depth.is_standard() };
+        let stage = engine::CopyDepth { depth: target.depth, copied: to.all(), size_px: target.size, constants };
+        let groups = lower::folded((width * height).div_ceil(engine::CopyDepth::INFO.local_size[0]));
+        self.recorder.push(label, Op::Dispatch { stage: stage.bind(), groups });
     }
 
     /// Keeps the target's item buffer beyond the frame: an object a pixel, row by row from the top; nothing if the target

@@ -1,6 +1,7 @@
 //! The opened device, and everything made from it.
 
 use crate::adapter::{self, AdapterInfo};
+use crate::depth::DepthFormat;
 use crate::error::Named;
 use crate::instance::Instance;
 use crate::memory::{Retired, RetiredList};
@@ -28,6 +29,8 @@ pub struct GpuOptions {
     pub cache_dir: Option<PathBuf>,
     /// Put a barrier before every stage, to tell a missing barrier from another bug.
     pub barrier_every_stage: bool,
+    /// How depth is kept.
+    pub depth: DepthFormat,
 }
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
@@ -53,6 +56,7 @@ pub(crate) struct Vulkan {
     pub(crate) allocator: ManuallyDrop<Mutex<Allocator>>,
     pub(crate) pipelines: Pipelines,
     pub(crate) info: AdapterInfo,
+    pub(crate) depth: DepthFormat,
     pub(crate) memory_bytes: AtomicU64,
     pub(crate) retired: RetiredList,
     pub(crate) queries: QueryStore,
@@ -72,6 +76,7 @@ impl Gpu {
     pub fn open(options: &GpuOptions) -> Result<Self> {
         let instance = Instance::new(options)?;
         let (physical, info) = adapter::choose(&instance, options.device.as_deref())?;
+        adapter::check_depth(&instance, physical, &info, options.depth)?;
         let family = graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
             device: info.name.clone(),
             missing: "a queue for graphics and compute".to_owned(),
@@ -113,6 +118,11 @@ impl Gpu {
     /// How stages are timed on this device.
     pub fn timer_mode(&self) -> TimerMode {
         self.0.vulkan.as_ref().and_then(|vulkan| vulkan.timer.get().copied()).unwrap_or(TimerMode::Split)
+    }
+
+    /// How depth is kept.
+    pub fn depth(&self) -> DepthFormat {
+        self.0.vulkan.as_ref().map_or(DepthFormat::default(), |vulkan| vulkan.depth)
     }
 
     /// Lanes of a subgroup; 8 without a device.
@@ -247,6 +257,7 @@ impl Vulkan {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             pipelines,
             info,
+            depth: options.depth,
             memory_bytes: AtomicU64::new(0),
             retired: RetiredList::default(),
             queries: QueryStore::default(),

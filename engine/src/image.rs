@@ -1,5 +1,6 @@
 //! Images, always in the general layout, and the targets made of them.
 
+use crate::depth::DepthFormat;
 use crate::error::Named;
 use crate::gpu::{Gpu, Vulkan};
 use crate::memory::Retired;
@@ -17,18 +18,18 @@ pub enum Format {
     Colour,
     /// An object index a pixel: the item buffer.
     Item,
-    /// 32-bit float depth, reversed: 1 near, 0 far.
+    /// Depth, in the device's [`DepthFormat`].
     Depth,
     /// A half float a pixel: counts of fragments.
     Heat,
 }
 
 impl Format {
-    pub(crate) fn vulkan(self) -> vk::Format {
+    pub(crate) fn vulkan(self, depth: DepthFormat) -> vk::Format {
         match self {
             Format::Colour => vk::Format::R8G8B8A8_UNORM,
             Format::Item => vk::Format::R32_UINT,
-            Format::Depth => vk::Format::D32_SFLOAT,
+            Format::Depth => depth.vulkan(),
             Format::Heat => vk::Format::R16_SFLOAT,
         }
     }
@@ -41,21 +42,21 @@ impl Format {
         }
     }
 
-    /// Bytes a texel.
-    pub fn texel_bytes(self) -> usize {
-        if self == Format::Heat {
-            2
-        } else {
-            4
+    /// Bytes a texel takes in a copy.
+    pub(crate) fn texel_bytes(self, depth: DepthFormat) -> usize {
+        match self {
+            Format::Heat => 2,
+            Format::Depth => depth.texel_bytes(),
+            Format::Colour | Format::Item => 4,
         }
     }
 
     /// The name of the Vulkan format.
-    pub fn name(self) -> &'static str {
+    pub fn name(self, depth: DepthFormat) -> &'static str {
         match self {
             Format::Colour => "R8G8B8A8_UNORM",
             Format::Item => "R32_UINT",
-            Format::Depth => "D32_SFLOAT (reversed)",
+            Format::Depth => depth.name(),
             Format::Heat => "R16_SFLOAT",
         }
     }
@@ -107,9 +108,11 @@ impl Image {
         self.size
     }
 
-    /// Reads the whole image, row by row from the top, now; the device must be idle (between frames).
+    /// Reads the whole image, row by row from the top, now; the device must be idle (between frames). Depth comes as reversed
+    /// floats, in whatever format it is kept.
     pub fn read(&self) -> Result<Vec<u8>> {
-        self.gpu.stage_from_image(self.raw, self.format, self.size)
+        let texels = self.gpu.stage_from_image(self.raw, self.format, self.size)?;
+        Ok(if self.format == Format::Depth { self.gpu.depth().reversed(texels) } else { texels })
     }
 
     fn create(&mut self, vulkan: &Vulkan, name: &str) -> Result<()> {
@@ -119,7 +122,7 @@ impl Image {
         };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
-            .format(self.format.vulkan())
+            .format(self.format.vulkan(vulkan.depth))
             .extent(vk::Extent3D { width: self.size[0], height: self.size[1], depth: 1 })
             .mip_levels(1)
             .array_layers(1)
@@ -144,7 +147,7 @@ impl Image {
             let view = vk::ImageViewCreateInfo::default()
                 .image(self.raw)
                 .view_type(vk::ImageViewType::TYPE_2D)
-                .format(self.format.vulkan())
+                .format(self.format.vulkan(vulkan.depth))
                 .subresource_range(range);
             self.view = vulkan.device.create_image_view(&view, None).named("vkCreateImageView")?;
         }

@@ -6,6 +6,7 @@
 mod adapter;
 mod barriers;
 mod capture;
+mod depth;
 mod error;
 mod frame;
 mod gpu;
@@ -24,6 +25,7 @@ mod transfer;
 pub use adapter::{AdapterInfo, DeviceKind};
 pub use barriers::{Barrier, BarrierTracker, Point, Use};
 pub use capture::Capture;
+pub use depth::DepthFormat;
 pub use error::Error;
 pub use frame::{Frame, FrameReport, Skip, StageTime, Statistics};
 pub use gpu::{Gpu, GpuOptions};

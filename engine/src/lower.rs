@@ -183,6 +183,7 @@ impl Recording<'_> {
             Some(DrawState {
                 colour,
                 item: target.item.is_some(),
+                depth: self.vulkan.depth,
                 depth_write: !target.depth_read_only,
                 strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
@@ -231,7 +232,8 @@ impl Recording<'_> {
         };
         let black = vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } };
         let nothing = vk::ClearValue { color: vk::ClearColorValue { uint32: [shaders::types::ITEM_NONE; 4] } };
-        let far = vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil: 0 } };
+        let [far_depth, near_depth] = self.vulkan.depth.range();
+        let far = vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: far_depth, stencil: 0 } };
         let colours: Vec<_> = target
             .colour
             .map(|(image, _)| attachment(image.view, black))
@@ -253,8 +255,8 @@ impl Recording<'_> {
             y: 0.0,
             width: width as f32,
             height: height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
+            min_depth: far_depth,
+            max_depth: near_depth,
         }];
         // SAFETY: views are alive and in the general layout; begin and end pair up.
         unsafe {

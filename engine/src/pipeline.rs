@@ -1,5 +1,6 @@
 //! Pipelines, made on first use from what the shader generator wrote down.
 
+use crate::depth::DepthFormat;
 use crate::error::Named;
 use crate::gpu::lock;
 use crate::image::Format;
@@ -27,6 +28,7 @@ pub(crate) struct Pipeline {
 pub(crate) struct DrawState {
     pub(crate) colour: Option<Format>,
     pub(crate) item: bool,
+    pub(crate) depth: DepthFormat,
     pub(crate) depth_write: bool,
     pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
@@ -202,7 +204,7 @@ fn draw_pipeline(
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
         .depth_write_enable(state.depth_write)
-        .depth_compare_op(if state.strictly_nearer { vk::CompareOp::GREATER } else { vk::CompareOp::GREATER_OR_EQUAL });
+        .depth_compare_op(state.depth.nearer(state.strictly_nearer));
     let replace = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
     let add = replace
         .blend_enable(true)
@@ -218,7 +220,7 @@ fn draw_pipeline(
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
     let mut rendering = vk::PipelineRenderingCreateInfo::default()
         .color_attachment_formats(&formats)
-        .depth_attachment_format(Format::Depth.vulkan());
+        .depth_attachment_format(state.depth.vulkan());
     let create = [vk::GraphicsPipelineCreateInfo::default()
         .stages(stages)
         .vertex_input_state(&vertex)
@@ -237,7 +239,8 @@ fn draw_pipeline(
 
 /// Colour first, then the item buffer.
 fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
-    state.colour.into_iter().chain(state.item.then_some(Format::Item)).map(Format::vulkan).collect()
+    let formats = state.colour.into_iter().chain(state.item.then_some(Format::Item));
+    formats.map(|format| format.vulkan(state.depth)).collect()
 }
 
 fn vertex_layout(

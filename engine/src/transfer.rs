@@ -83,7 +83,7 @@ impl Gpu {
 
     pub(crate) fn stage_from_image(&self, from: vk::Image, format: Format, size: [u32; 2]) -> Result<Vec<u8>> {
         let vulkan = self.vulkan()?;
-        let bytes = size[0] as usize * size[1] as usize * format.texel_bytes();
+        let bytes = size[0] as usize * size[1] as usize * format.texel_bytes(vulkan.depth);
         let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
         let to = staging.raw;
         let region = whole_image(format, size);

@@ -4,6 +4,77 @@
 
 use crate::contract::*;
 
+/// A depth buffer as reversed floats, where its format is another and copying would give other bits.
+/// No twin: a texel is a word; tests/tests/precision.rs holds it to what the host reads.
+#[derive(Clone, Copy, Debug)]
+pub struct CopyDepth {
+    /// `depth` in GLSL.
+    pub depth: ImageRef,
+    /// `copied` in GLSL.
+    pub copied: BufferRef<f32>,
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
+    /// Specialization constants.
+    pub constants: CopyDepthConstants,
+}
+
+impl Stage for CopyDepth {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "engine/copy_depth",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/engine/copy_depth.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "copied", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 8,
+        constants: &[ConstantInfo { name: "STANDARD_DEPTH", id: 8 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = CopyDepthPush { size_px: self.size_px };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.depth.into(), self.copied.into()],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.standard_depth)],
+        )
+    }
+}
+
+impl ComputeStage for CopyDepth {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CopyDepthPush {
+    size_px: [u32; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(CopyDepthPush, size_px) == 0);
+    assert!(size_of::<CopyDepthPush>() == 8);
+};
+
+/// Specialization constants of [`CopyDepth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CopyDepthConstants {
+    /// The buffer keeps standard depth, 0 near: only where depth formats are studied.
+    pub standard_depth: bool,
+}
+
+impl Default for CopyDepthConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { standard_depth: false }
+    }
+}
+
 /// A triangle over the whole target, for the timer's self-check.
 ///
 /// Work of a known size a pixel, for the timer's self-check.

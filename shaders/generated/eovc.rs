@@ -53,7 +53,11 @@ impl Stage for CastRays {
             BindingInfo { name: "touched", binding: 7, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
         push_size: 4,
-        constants: &[ConstantInfo { name: "COUNT", id: 0 }, ConstantInfo { name: "DETAIL", id: 1 }],
+        constants: &[
+            ConstantInfo { name: "COUNT", id: 0 },
+            ConstantInfo { name: "DETAIL", id: 1 },
+            ConstantInfo { name: "STANDARD_DEPTH", id: 8 },
+        ],
         local_size: [0, 0, 0],
         vertex: &[],
         vertex_stride: 0,
@@ -75,7 +79,11 @@ impl Stage for CastRays {
                 self.touched.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.count), u32::from(self.constants.detail)],
+            vec![
+                u32::from(self.constants.count),
+                u32::from(self.constants.detail),
+                u32::from(self.constants.standard_depth),
+            ],
         )
     }
 }
@@ -100,12 +108,14 @@ pub struct CastRaysConstants {
     pub count: bool,
     /// What is small on the screen is left out: otherwise rays need not ask.
     pub detail: bool,
+    /// The buffer keeps standard depth, 0 near: only where depth formats are studied.
+    pub standard_depth: bool,
 }
 
 impl Default for CastRaysConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { count: false, detail: false }
+        Self { count: false, detail: false, standard_depth: false }
     }
 }
 

@@ -91,7 +91,7 @@ impl Stage for FillFromDepth {
             BindingInfo { name: "base", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 16,
-        constants: &[ConstantInfo { name: "REDUCTION", id: 0 }],
+        constants: &[ConstantInfo { name: "REDUCTION", id: 0 }, ConstantInfo { name: "STANDARD_DEPTH", id: 8 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -104,7 +104,7 @@ impl Stage for FillFromDepth {
             Self::INFO,
             vec![self.depth.into(), self.base.into()],
             bytemuck::bytes_of(&push),
-            vec![self.constants.reduction],
+            vec![self.constants.reduction, u32::from(self.constants.standard_depth)],
         )
     }
 }
@@ -129,12 +129,14 @@ const _: () = {
 pub struct FillFromDepthConstants {
     /// A texel stands for 2^this pixels a side. A constant, so that loops over pixels unroll: half the time.
     pub reduction: u32,
+    /// The buffer keeps standard depth, 0 near: only where depth formats are studied.
+    pub standard_depth: bool,
 }
 
 impl Default for FillFromDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { reduction: 0 }
+        Self { reduction: 0, standard_depth: false }
     }
 }
 

@@ -19,6 +19,8 @@ pub struct ReduceDepth {
     pub size_px: [u32; 2],
     /// `tiles` in GLSL.
     pub tiles: [u32; 2],
+    /// Specialization constants.
+    pub constants: ReduceDepthConstants,
 }
 
 impl Stage for ReduceDepth {
@@ -34,7 +36,7 @@ impl Stage for ReduceDepth {
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 16,
-        constants: &[],
+        constants: &[ConstantInfo { name: "STANDARD_DEPTH", id: 8 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -47,7 +49,7 @@ impl Stage for ReduceDepth {
             Self::INFO,
             vec![self.depth.into(), self.levels.into(), self.pyramid.into()],
             bytemuck::bytes_of(&push),
-            vec![],
+            vec![u32::from(self.constants.standard_depth)],
         )
     }
 }
@@ -66,6 +68,20 @@ const _: () = {
     assert!(std::mem::offset_of!(ReduceDepthPush, tiles) == 8);
     assert!(size_of::<ReduceDepthPush>() == 16);
 };
+
+/// Specialization constants of [`ReduceDepth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReduceDepthConstants {
+    /// The buffer keeps standard depth, 0 near: only where depth formats are studied.
+    pub standard_depth: bool,
+}
+
+impl Default for ReduceDepthConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { standard_depth: false }
+    }
+}
 
 /// Three coarser levels of the farthest-depth pyramid from the one below. Twin: culling/src/hzb/twin.rs.
 #[derive(Clone, Copy, Debug)]

@@ -334,6 +334,7 @@ pub fn header(session: &Session, command: &str) -> Results {
             driver: text(|info| info.driver.clone()),
             api_version: text(|info| info.api.clone()),
             timer_mode: session.gpu.timer_mode().to_string(),
+            depth_format: session.gpu.depth().to_string(),
             details: BTreeMap::new(),
         },
         scene: results::Scene {

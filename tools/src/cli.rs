@@ -1,11 +1,13 @@
 //! The command line.
 
 mod compare;
+mod device;
 mod methods;
 mod stress;
 mod sweep;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
+pub use device::{DepthChoice, DeviceArgs, TimerChoice};
 pub use methods::{parse_methods, parse_setting};
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
@@ -17,7 +19,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use culling::world::DETAIL_OPTION;
 use culling::METHODS;
-use engine::{GpuOptions, TimerMode};
 use scenes::SceneOptions;
 use std::path::PathBuf;
 
@@ -63,32 +64,6 @@ const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texe
     The path of eovc-* is spread over --frames: 600 is the thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
     woc-* and tog-* walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
-
-/// Which device, and how it is watched.
-#[derive(Args, Clone, Debug)]
-pub struct DeviceArgs {
-    /// Device index or part of its name (see `sightline info`); the best one if left out
-    #[arg(long, value_name = "NAME|INDEX")]
-    pub device: Option<String>,
-    /// Turn on the validation layer with synchronization validation; any message stops the run. Times then mean little
-    #[arg(long)]
-    pub validation: bool,
-    /// How stages are timed; decided by a self-check if left out
-    #[arg(long, value_name = "MODE")]
-    pub timer: Option<TimerChoice>,
-    /// Put a barrier before every stage, to tell a missing barrier from another fault
-    #[arg(long)]
-    pub barrier_every_stage: bool,
-}
-
-/// How stages are kept apart in time.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum TimerChoice {
-    /// A timestamp after each stage
-    Plain,
-    /// A timestamp and a full barrier after each stage
-    Split,
-}
 
 /// Which scene, path and picture size.
 #[derive(Args, Clone, Debug)]
@@ -314,22 +289,6 @@ impl SceneChoice {
             whole_path: self.whole_path,
             frames: self.frames as usize,
             size: self.size,
-        }
-    }
-}
-
-impl DeviceArgs {
-    /// As the engine takes it.
-    pub fn gpu(&self) -> GpuOptions {
-        GpuOptions {
-            device: self.device.clone(),
-            validation: self.validation,
-            timer: self.timer.map(|choice| match choice {
-                TimerChoice::Plain => TimerMode::Plain,
-                TimerChoice::Split => TimerMode::Split,
-            }),
-            cache_dir: crate::session::cache_folder(),
-            barrier_every_stage: self.barrier_every_stage,
         }
     }
 }

@@ -66,6 +66,9 @@ pub struct Device {
     pub api_version: String,
     /// How stage times were taken: `timestamps` or `submits`.
     pub timer_mode: String,
+    /// How depth was kept, such as `D32_SFLOAT (reversed)`, with which alone the exact methods are exact. Empty in older files: that.
+    #[serde(default)]
+    pub depth_format: String,
     /// More about the device, for people.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub details: BTreeMap<String, String>,

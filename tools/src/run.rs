@@ -5,7 +5,7 @@ use crate::session::Session;
 use anyhow::{Context, Result};
 use culling::world::DETAIL_OPTION;
 use culling::{drawn_objects, Drawn, Entry, Guarantee, Method, Options, Setup, View, VisibleSets, Work};
-use engine::FrameReport;
+use engine::{DepthFormat, FrameReport};
 use std::sync::Arc;
 
 /// A method with its settings, ready to run.
@@ -18,6 +18,7 @@ pub struct Contender {
     pub method: Box<dyn Method>,
     /// Device memory that it holds beyond scene and targets, MiB.
     pub memory_mib: f64,
+    depth: DepthFormat,
 }
 
 /// What is measured of one frame, untimed.
@@ -48,7 +49,7 @@ impl Contender {
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
         let method = (entry.make)(&setup).with_context(|| format!("method '{}'", options.label()))?;
         let memory_mib = session.gpu.memory_mib() - before;
-        Ok(Contender { entry, options, method, memory_mib })
+        Ok(Contender { entry, options, method, memory_mib, depth: session.gpu.depth() })
     }
 
     /// Its label in results.
@@ -58,7 +59,11 @@ impl Contender {
 
     /// What it promises, with these options.
     pub fn guarantee(&self) -> Guarantee {
+        let tests_bounds = self.entry.options.contains(&DETAIL_OPTION);
         match self.entry.guarantee {
+            Guarantee::Exact if tests_bounds && self.depth != DepthFormat::default() => {
+                Guarantee::Approximate("bounds allow for reversed D32 depth")
+            }
             Guarantee::Exact if self.options.number(DETAIL_OPTION.name) > 0 => {
                 Guarantee::Approximate("small things are left out")
             }

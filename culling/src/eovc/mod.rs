@@ -61,6 +61,7 @@ struct Eovc {
     frame: u32,
     counting: bool,
     leaves_out_details: bool,
+    standard_depth: bool,
     now: usize,
     still: Still,
 }
@@ -92,6 +93,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         frame: FIRST_FRAME,
         counting: false,
         leaves_out_details: false,
+        standard_depth: gpu.depth().is_standard(),
         now: 0,
         still: Still::new(options).settled_after(SETTLED_AFTER),
         tree,
@@ -254,7 +256,11 @@ impl Eovc {
             depth: target.depth,
             touched: self.groups.touched.all(),
             frame: self.frame,
-            constants: eovc::CastRaysConstants { count: self.counting, detail: self.leaves_out_details },
+            constants: eovc::CastRaysConstants {
+                count: self.counting,
+                detail: self.leaves_out_details,
+                standard_depth: self.standard_depth,
+            },
         };
         f.test_boxes(cast, self.open_boxes.draw(), &target.test_only());
     }

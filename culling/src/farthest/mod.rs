@@ -32,6 +32,7 @@ pub struct MapKind {
 /// A farthest-depth map on the GPU. Something fills the base; then the map is built, and tested against.
 pub struct FarthestMap {
     size_px: [u32; 2],
+    standard_depth: bool,
     kind: MapKind,
     shape: FarthestShape,
     layout: Vec<PyramidLevel>,
@@ -77,6 +78,7 @@ impl FarthestMap {
         let texels = layout.iter().map(|level| level.width * level.height).sum::<u32>();
         Ok(FarthestMap {
             size_px,
+            standard_depth: gpu.depth().is_standard(),
             kind,
             shape,
             levels: Buffer::with_data(gpu, "farthest.levels", &layout, Placement::Storage)?,
@@ -113,7 +115,10 @@ impl FarthestMap {
             base: self.base(),
             size_px: self.size_px,
             base_size: [width, height],
-            constants: farthest::FillFromDepthConstants { reduction: self.shape.reduction },
+            constants: farthest::FillFromDepthConstants {
+                reduction: self.shape.reduction,
+                standard_depth: self.standard_depth,
+            },
         };
         f.dispatch(stage, width.div_ceil(FARTHEST_STRIP) * height);
     }

@@ -8,6 +8,7 @@ use shaders::{hzb, BufferRef, Stage};
 /// Farthest depths by level, from level 1 (2x2 pixels a texel) to the one that has a single texel.
 pub struct Pyramid {
     size: [u32; 2],
+    standard_depth: bool,
     layout: Vec<PyramidLevel>,
     levels: Buffer<PyramidLevel>,
     texels: Buffer<f32>,
@@ -35,6 +36,7 @@ impl Pyramid {
         let texels = layout.iter().map(|level| level.width * level.height).sum::<u32>();
         Ok(Pyramid {
             size,
+            standard_depth: gpu.depth().is_standard(),
             levels: Buffer::with_data(gpu, "pyramid.levels", &layout, Placement::Storage)?,
             texels: Buffer::new(gpu, "pyramid.texels", texels as usize, Placement::Storage)?,
             layout,
@@ -64,6 +66,7 @@ impl Pyramid {
             pyramid: self.texels.all(),
             size_px: self.size,
             tiles,
+            constants: hzb::ReduceDepthConstants { standard_depth: self.standard_depth },
         };
         f.dispatch(first, tiles[0] * tiles[1]);
         let mut source_level = REDUCED_LEVELS;

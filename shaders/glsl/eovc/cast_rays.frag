@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "ray.glsl"
+#include "depth.glsl"
 layout(early_fragment_tests) in;
 // Count rays, node visits and rays stopped early: for tables, never in timed frames.
 layout(constant_id = 0) const bool COUNT = false;
@@ -58,7 +59,7 @@ void main() {
     TreeNode root = nodes.items[group];
     BoxView box_view = views.items[0];
     CullView view = box_view.view;
-    float open_to = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
+    float open_to = reversed(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r);
     // What an object's own depth may be rounded down by, at most that of the group's nearest point.
     float open_from = max(open_to - DEPTH_ROUNDING * nearest, 0.0);
     Ray ray = ray_through(gl_FragCoord.xy, open_from, box_view);

@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "grid.glsl"
 #include "farthest.glsl"
+#include "depth.glsl"
 
 layout(local_size_x = 64) in;
 // A texel stands for 2^this pixels a side. A constant, so that loops over pixels unroll: half the time.
@@ -18,7 +19,7 @@ float farthest_of(uvec2 texel) {
     float farthest = 1.0;
     for (uint y = 0u; y < 1u << REDUCTION; y++)
         for (uint x = 0u; x < 1u << REDUCTION; x++)
-            farthest = min(farthest, texelFetch(depth, ivec2(min(first + uvec2(x, y), push.size_px - 1u)), 0).r);
+            farthest = min(farthest, reversed(texelFetch(depth, ivec2(min(first + uvec2(x, y), push.size_px - 1u)), 0).r));
     return farthest;
 }
 

@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "grid.glsl"
 #include "types.glsl"
+#include "depth.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform texture2D depth;
@@ -13,7 +14,7 @@ layout(set = 0, binding = 2, scalar) writeonly buffer Pyramid { float items[]; }
 layout(push_constant, scalar) uniform Push { uvec2 size_px; uvec2 tiles; } push;
 
 float source_depth(uvec2 texel) {
-    return texelFetch(depth, ivec2(min(texel, push.size_px - 1u)), 0).r;
+    return reversed(texelFetch(depth, ivec2(min(texel, push.size_px - 1u)), 0).r);
 }
 
 #include "reduce.glsl"

@@ -32,7 +32,10 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
         ("largest image", format!("{0} x {0} pixels", info.max_image_px)),
         ("largest buffer", format!("{} MiB for a stage", info.max_storage_bytes >> 20)),
         ("vertex grid", format!("1/{} pixel", (1.0 / info.snap_px).round())),
-        ("formats", [Format::Colour, Format::Item, Format::Depth, Format::Heat].map(Format::name).join(", ")),
+        (
+            "formats",
+            [Format::Colour, Format::Item, Format::Depth, Format::Heat].map(|it| it.name(gpu.depth())).join(", "),
+        ),
         ("caches", cache_folder().map_or("none (no HOME)".to_owned(), |folder| folder.display().to_string())),
     ];
     for (name, value) in rows {

@@ -25,7 +25,7 @@ impl std::fmt::Display for Difference {
 /// Name, whether it changes what a frame shows, and value.
 type Fact = (&'static str, bool, fn(&Results) -> String);
 
-const FACTS: [Fact; 13] = [
+const FACTS: [Fact; 14] = [
     ("scene", true, |run| run.scene.name.clone()),
     ("objects", true, |run| run.scene.objects.to_string()),
     ("triangles", true, |run| run.scene.triangles.to_string()),
@@ -38,6 +38,7 @@ const FACTS: [Fact; 13] = [
     ("device", false, |run| run.device.name.clone()),
     ("type of device", false, |run| run.device.kind.clone()),
     ("driver", false, |run| run.device.driver.clone()),
+    ("depth format", true, |run| run.device.depth_format.clone()),
     ("timers", false, |run| run.device.timer_mode.clone()),
 ];
 

@@ -142,7 +142,7 @@ fn what_only_one_run_has_is_listed() {
 #[test]
 fn runs_that_differ_are_refused_by_name() {
     type Change = fn(&mut Results);
-    let changes: [(&str, bool, Change); 13] = [
+    let changes: [(&str, bool, Change); 14] = [
         ("scene: city in A, rooms in B", true, |b| b.scene.name = "rooms".into()),
         ("objects: 94000 in A, 1 in B", true, |b| b.scene.objects = 1),
         ("triangles: 18800000 in A, 1 in B", true, |b| b.scene.triangles = 1),
@@ -155,6 +155,9 @@ fn runs_that_differ_are_refused_by_name() {
         ("device: llvmpipe in A, other in B", false, |b| b.device.name = "other".into()),
         ("type of device: cpu in A, discrete in B", false, |b| b.device.kind = "discrete".into()),
         ("driver: Mesa 22.3.6 in A, Mesa 25 in B", false, |b| b.device.driver = "Mesa 25".into()),
+        ("depth format: D32_SFLOAT (reversed) in A, D16_UNORM in B", true, |b| {
+            b.device.depth_format = "D16_UNORM".into()
+        }),
         ("timers: timestamps in A, submits in B", false, |b| b.device.timer_mode = "submits".into()),
     ];
     for (named, other_frames, change) in changes {

@@ -21,6 +21,7 @@ pub fn facts(results: &Results) -> Vec<Fact> {
     let rows = [
         ("Device", format!("{} ({})", device.name, device.kind)),
         ("Driver", format!("{}, Vulkan {}", device.driver, device.api_version)),
+        ("Depth", device.depth_format.clone()),
         ("Stages timed by", device.timer_mode.clone()),
         ("Command", results.command.clone()),
         ("Sightline", results.sightline_version.clone()),

@@ -62,6 +62,7 @@ pub(crate) fn results() -> Results {
             driver: "Mesa 22.3.6".into(),
             api_version: "1.3.230".into(),
             timer_mode: "timestamps".into(),
+            depth_format: "D32_SFLOAT (reversed)".into(),
             details: BTreeMap::new(),
         },
         scene: Scene { name: "city".into(), objects: 94_000, triangles: 18_800_000, hash: "0f".into() },
