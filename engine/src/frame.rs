@@ -159,8 +159,9 @@ impl Frame {
     }
 
     /// Sets every word of a buffer.
-    pub fn fill<T: Pod>(&mut self, label: &str, buffer: &Buffer<T>, value: u32) {
-        self.recorder.push(label, Op::Fill { buffer: buffer.all().into(), value });
+    pub fn fill<T: Pod>(&mut self, label: &str, buffer: impl Into<BufferRef<T>>, value: u32) {
+        let buffer: BufferRef<T> = buffer.into();
+        self.recorder.push(label, Op::Fill { buffer: buffer.into(), value });
     }
 
     /// Copies a buffer to another one at least as long.

@@ -37,6 +37,12 @@ pub struct Buffer<T> {
     element: PhantomData<fn() -> T>,
 }
 
+impl<T: Pod> From<&Buffer<T>> for BufferRef<T> {
+    fn from(buffer: &Buffer<T>) -> Self {
+        buffer.all()
+    }
+}
+
 impl<T: Pod> Buffer<T> {
     /// Makes a zeroed buffer of `len` elements; an empty one still binds (as one element).
     pub fn new(gpu: &Gpu, name: &str, len: usize, placement: Placement) -> Result<Self> {

@@ -155,6 +155,8 @@ pub struct TestBounds {
     pub texels: BufferRef<f32>,
     /// 1: in the view volume and not hidden.
     pub visible: BufferRef<u32>,
+    /// The blocks in view; of the objects of others nothing is written.
+    pub blocks: BufferRef<u32>,
     /// `view` in GLSL.
     pub view: types::CullView,
     /// `shape` in GLSL.
@@ -176,6 +178,7 @@ impl Stage for TestBounds {
             BindingInfo { name: "levels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "texels", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "visible", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "blocks", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 124,
         constants: &[],
@@ -189,7 +192,14 @@ impl Stage for TestBounds {
         let push = TestBoundsPush { view: self.view, shape: self.shape, object_count: self.object_count };
         BoundStage::new(
             Self::INFO,
-            vec![self.bounds.into(), self.kept.into(), self.levels.into(), self.texels.into(), self.visible.into()],
+            vec![
+                self.bounds.into(),
+                self.kept.into(),
+                self.levels.into(),
+                self.texels.into(),
+                self.visible.into(),
+                self.blocks.into(),
+            ],
             bytemuck::bytes_of(&push),
             vec![],
         )

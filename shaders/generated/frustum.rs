@@ -5,6 +5,61 @@
 use super::types;
 use crate::contract::*;
 
+/// Which blocks of objects that lie side by side are not outside the view volume? Only objects of those need
+/// tests of their own: a hierarchy of one level, in the order that the scene came in. The blocks are listed in the order of
+/// atomics, which nothing shows: later stages write by object. Twin: culling/src/frustum/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct TestBlocks {
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// `blocks` in GLSL.
+    pub blocks: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `block_count` in GLSL.
+    pub block_count: u32,
+}
+
+impl Stage for TestBlocks {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "frustum/test_blocks",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/frustum/test_blocks.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "blocks", binding: 1, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 108,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TestBlocksPush { view: self.view, block_count: self.block_count };
+        BoundStage::new(Self::INFO, vec![self.bounds.into(), self.blocks.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for TestBlocks {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TestBlocksPush {
+    view: types::CullView,
+    block_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TestBlocksPush, view) == 0);
+    assert!(std::mem::offset_of!(TestBlocksPush, block_count) == 104);
+    assert!(size_of::<TestBlocksPush>() == 108);
+};
+
 /// Which objects are outside the view volume? n/p-vertex test on world boxes (Zachmann, VFC; GPU Gems
 /// 29.6.4), done in clip space so that perspective, parallel and oblique projections are one case. Twin: culling/src/frustum/twin.rs.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +68,8 @@ pub struct TestBounds {
     pub bounds: BufferRef<types::Bounds>,
     /// `kept` in GLSL.
     pub kept: BufferRef<u32>,
+    /// The blocks in view; objects of others keep what `kept` says.
+    pub blocks: BufferRef<u32>,
     /// `view` in GLSL.
     pub view: types::CullView,
     /// `object_count` in GLSL.
@@ -29,6 +86,7 @@ impl Stage for TestBounds {
         bindings: &[
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "kept", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "blocks", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 108,
         constants: &[],
@@ -40,7 +98,12 @@ impl Stage for TestBounds {
 
     fn bind(&self) -> BoundStage {
         let push = TestBoundsPush { view: self.view, object_count: self.object_count };
-        BoundStage::new(Self::INFO, vec![self.bounds.into(), self.kept.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(
+            Self::INFO,
+            vec![self.bounds.into(), self.kept.into(), self.blocks.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
     }
 }
 

@@ -146,10 +146,14 @@ pub struct TestBounds {
     pub levels: BufferRef<types::PyramidLevel>,
     /// `pyramid` in GLSL.
     pub pyramid: BufferRef<f32>,
-    /// `seen` in GLSL.
-    pub seen: BufferRef<u32>,
+    /// By object: the last frame saw it, and this one does.
+    pub seen_before: BufferRef<u32>,
     /// `newly` in GLSL.
     pub newly: BufferRef<u32>,
+    /// The blocks in view; of the objects of others nothing is written.
+    pub blocks: BufferRef<u32>,
+    /// `seen` in GLSL.
+    pub seen: BufferRef<u32>,
     /// `view` in GLSL.
     pub view: types::CullView,
     /// `object_count` in GLSL.
@@ -168,8 +172,10 @@ impl Stage for TestBounds {
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "seen", binding: 3, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "seen_before", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "newly", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "blocks", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "seen", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 112,
         constants: &[ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 }],
@@ -184,7 +190,15 @@ impl Stage for TestBounds {
             TestBoundsPush { view: self.view, object_count: self.object_count, coarsest_level: self.coarsest_level };
         BoundStage::new(
             Self::INFO,
-            vec![self.bounds.into(), self.levels.into(), self.pyramid.into(), self.seen.into(), self.newly.into()],
+            vec![
+                self.bounds.into(),
+                self.levels.into(),
+                self.pyramid.into(),
+                self.seen_before.into(),
+                self.newly.into(),
+                self.blocks.into(),
+                self.seen.into(),
+            ],
             bytemuck::bytes_of(&push),
             vec![self.constants.footprint_texels],
         )

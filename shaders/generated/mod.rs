@@ -39,6 +39,7 @@ pub const STAGES: &[&StageInfo] = &[
     <farthest::DoubleSquares as Stage>::INFO,
     <farthest::FillFromDepth as Stage>::INFO,
     <farthest::TestBounds as Stage>::INFO,
+    <frustum::TestBlocks as Stage>::INFO,
     <frustum::TestBounds as Stage>::INFO,
     <hzb::ReduceDepth as Stage>::INFO,
     <hzb::ReduceLevels as Stage>::INFO,

@@ -6,7 +6,7 @@ use culling::{DrawList, Method, Options, Setup, View, World};
 use engine::{Buffer, Error, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
 use harness::footprints::covered;
 use harness::{assert_caught, assert_none, gpu, laws, worlds, Lab, Subject};
-use shaders::types::{Bounds, DrawCommand, PyramidLevel};
+use shaders::types::{Bounds, DrawCommand, PyramidLevel, BLOCK_OBJECTS};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What is wrong with a method.
@@ -24,6 +24,7 @@ enum Defect {
     OffByOneLevel,
     ForgottenLatePhase,
     NeverForgets,
+    FirstOfEachBlock,
 }
 
 static INSTANCES: AtomicU32 = AtomicU32::new(0);
@@ -37,6 +38,9 @@ struct Broken {
     commands: Buffer<DrawCommand>,
     reversed: Buffer<DrawCommand>,
     shrunk: Buffer<Bounds>,
+    firsts: Buffer<Bounds>,
+    no_blocks: Buffer<u32>,
+    seen_before: Buffer<u32>,
     seen: Buffer<u32>,
     newly: Buffer<u32>,
     lists: [DrawList; 2],
@@ -52,6 +56,7 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
         commands[0].instance_count = 0;
     }
     let mut shrunk = world.read_bounds()?;
+    let firsts: Vec<Bounds> = shrunk.iter().step_by(BLOCK_OBJECTS as usize).copied().collect();
     shrunk.iter_mut().for_each(|bounds| bounds.half_extent = bounds.half_extent.map(|half| 0.3 * half));
     let words = |name| Buffer::new(gpu, name, world.len(), Placement::Storage);
     Ok(Box::new(Broken {
@@ -63,6 +68,9 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
         commands: Buffer::with_data(gpu, "broken.commands", &commands, Placement::Storage)?,
         reversed: Buffer::with_data(gpu, "broken.reversed", &reversed, Placement::Storage)?,
         shrunk: Buffer::with_data(gpu, "broken.shrunk", &shrunk, Placement::Storage)?,
+        firsts: Buffer::with_data(gpu, "broken.firsts", &firsts, Placement::Storage)?,
+        no_blocks: Buffer::with_data(gpu, "broken.no_blocks", &[0, 1, 1, 0], Placement::Storage)?,
+        seen_before: words("broken.seen_before")?,
         seen: words("broken.seen")?,
         newly: words("broken.newly")?,
         lists: [DrawList::new(gpu, "broken.early", world)?, DrawList::new(gpu, "broken.late", world)?],
@@ -115,9 +123,17 @@ impl Broken {
         let bounds = if self.defect == Defect::ShrunkBounds { self.shrunk.all() } else { world.bounds() };
         if self.defect != Defect::StaleFlags || self.frames == 1 || !self.skip {
             let object_count = world.len() as u32;
-            f.dispatch(
-                shaders::frustum::TestBounds { bounds, kept: self.seen.all(), view: cull, object_count },
-                object_count,
+            let blocks = world.blocks_in_view(f, view);
+            if self.defect == Defect::FirstOfEachBlock {
+                let (bounds, block_count) = (self.firsts.all(), self.firsts.len() as u32);
+                f.copy("broken/clear_blocks", self.no_blocks.all(), blocks);
+                let test = shaders::frustum::TestBlocks { bounds, blocks, view: cull, block_count };
+                f.dispatch(test, block_count);
+            }
+            f.fill("frustum/clear_kept", &self.seen, 0);
+            f.dispatch_indirect(
+                shaders::frustum::TestBounds { bounds, blocks, kept: self.seen.all(), view: cull, object_count },
+                blocks,
             );
             self.lists[0].pack(f, world, self.seen.all());
         } else {
@@ -139,18 +155,24 @@ impl Broken {
         self.lists[0].pack(f, world, self.seen.all());
         world.draw(f, &self.lists[0], view, target);
         pyramid.reduce(f, target);
+        let blocks = world.blocks_in_view(f, view);
+        f.copy("hzb/keep_seen", self.seen.all(), self.seen_before.all());
+        f.fill("hzb/clear_seen", &self.seen, 0);
+        f.fill("hzb/clear_newly", &self.newly, 0);
         let test = shaders::hzb::TestBounds {
             bounds: world.bounds(),
             levels: if self.defect == Defect::OffByOneLevel { off_by_one.all() } else { pyramid.levels() },
             pyramid: if self.defect == Defect::NearPyramid { near.all() } else { pyramid.texels() },
+            seen_before: self.seen_before.all(),
             seen: self.seen.all(),
             newly: self.newly.all(),
+            blocks,
             view: view.cull(),
             object_count: world.len() as u32,
             coarsest_level,
             constants: Default::default(),
         };
-        f.dispatch(test, world.len() as u32);
+        f.dispatch_indirect(test, blocks);
         if self.defect != Defect::ForgottenLatePhase || self.frames == 1 {
             self.lists[1].pack(f, world, self.newly.all());
             world.draw(f, &self.lists[1], view, target);
@@ -185,6 +207,16 @@ fn bounds_that_are_too_small_are_noticed() {
         |s| make(s, Defect::ShrunkBounds),
         &worlds::walled(300),
         "differing pixels",
+    );
+}
+
+#[test]
+fn blocks_that_do_not_hold_their_objects_are_noticed() {
+    caught(
+        laws::no_visible_object_is_culled,
+        |s| make(s, Defect::FirstOfEachBlock),
+        &worlds::walled(300),
+        "false negatives",
     );
 }
 

@@ -74,6 +74,7 @@ struct Buggy {
     last: Option<Camera>,
     commands: Buffer<DrawCommand>,
     bounds: Buffer<Bounds>,
+    seen_before: Buffer<u32>,
     seen: Buffer<u32>,
     newly: Buffer<u32>,
     lists: [DrawList; 2],
@@ -101,6 +102,7 @@ fn make(setup: &Setup<'_>, bug: Bug) -> culling::Result<Box<dyn Method>> {
         last: None,
         commands: Buffer::with_data(gpu, "buggy.commands", &commands, Placement::Storage)?,
         bounds: Buffer::with_data(gpu, "buggy.bounds", &bounds, Placement::Storage)?,
+        seen_before: words("buggy.seen_before")?,
         seen: words("buggy.seen")?,
         newly: words("buggy.newly")?,
         lists: [DrawList::new(gpu, "buggy.early", world)?, DrawList::new(gpu, "buggy.late", world)?],
@@ -136,18 +138,24 @@ impl Method for Buggy {
             return Ok(());
         }
         pyramid.reduce(f, target);
+        let blocks = world.blocks_in_view(f, view);
+        f.copy("hzb/keep_seen", self.seen.all(), self.seen_before.all());
+        f.fill("hzb/clear_seen", &self.seen, 0);
+        f.fill("hzb/clear_newly", &self.newly, 0);
         let test = shaders::hzb::TestBounds {
             bounds: if self.bug == Bug::NoOutwardRounding { self.bounds.all() } else { world.bounds() },
             levels: pyramid.levels(),
             pyramid: pyramid.texels(),
+            seen_before: self.seen_before.all(),
             seen: self.seen.all(),
             newly: self.newly.all(),
+            blocks,
             view: cull,
             object_count: world.len() as u32,
             coarsest_level,
             constants: Default::default(),
         };
-        f.dispatch(test, world.len() as u32);
+        f.dispatch_indirect(test, blocks);
         self.lists[1].pack(f, world, self.newly.all());
         world.draw(f, &self.lists[1], view, target);
         Ok(())

@@ -101,15 +101,17 @@ impl Hom {
         let (kept, visible) = (self.kept.all(), self.visible.all());
 
         f.part("prepass");
-        let frustum = frustum::TestBounds { bounds: world.bounds(), kept, view: view.cull(), object_count };
-        f.dispatch(frustum, object_count); // 1. view-frustum culling
+        let blocks = world.blocks_in_view(f, view);
+        let frustum = frustum::TestBounds { bounds: world.bounds(), blocks, kept, view: view.cull(), object_count };
+        f.fill("frustum/clear_kept", &self.kept, 0);
+        f.dispatch_indirect(frustum, blocks); // 1. view-frustum culling
         self.in_view.pack(f, world, kept);
         world.draw_depth(f, &self.in_view, view, target); // 2. this frame's depth
 
         f.part("");
         map.fill_from_depth(f, target);
         map.build(f); // 3. the farthest depth of any region
-        map.test(f, world, view, kept, visible); // 4. who lies behind it everywhere
+        map.test(f, world, view, (kept, blocks), visible); // 4. who lies behind it everywhere
         self.list.pack(f, world, visible); // 5. the others, in object order
         Ok(())
     }
@@ -117,6 +119,7 @@ impl Hom {
     /// Camera and objects unchanged: the last frame's list holds, and draws all of the depth itself.
     fn skip(&self, f: &mut Frame) {
         f.part("prepass");
+        World::skip_blocks(f, Still::REASON);
         f.skip(frustum::TestBounds::INFO.name, Still::REASON);
         self.in_view.skip_packing(f, Still::REASON);
         f.skip(draw::Depth::INFO.name, Still::REASON);

@@ -140,20 +140,29 @@ impl FarthestMap {
         }
     }
 
-    /// Flags the objects whose `kept` is not 0 and which the map does not hide. `view` is that of the picture, whatever the
-    /// size of the base.
-    pub fn test(&self, f: &mut Frame, world: &World, view: &View, kept: BufferRef<u32>, visible: BufferRef<u32>) {
+    /// Flags the objects whose `kept` is not 0 and which the map does not hide, of the `blocks` in view. `view` is that of the
+    /// picture, whatever the size of the base.
+    pub fn test(
+        &self,
+        f: &mut Frame,
+        world: &World,
+        view: &View,
+        (kept, blocks): (BufferRef<u32>, BufferRef<u32>),
+        visible: BufferRef<u32>,
+    ) {
+        f.fill("farthest/clear_visible", visible, 0);
         let test = farthest::TestBounds {
             bounds: world.bounds(),
             kept,
             levels: self.levels.all(),
             texels: self.texels.all(),
+            blocks,
             visible,
             view: view.cull(),
             shape: self.shape,
             object_count: world.len() as u32,
         };
-        f.dispatch(test, world.len() as u32);
+        f.dispatch_indirect(test, blocks);
     }
 
     /// Notes that building and testing are not needed.

@@ -6,7 +6,7 @@ use crate::pack::DrawList;
 use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Placement, Target};
-use shaders::frustum;
+use shaders::{frustum, Stage};
 
 /// `skip`: leave out what cannot change the result.
 pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION];
@@ -31,19 +31,23 @@ impl Method for Frustum {
         world.update(f);
         f.clear(target);
         if self.still.holds(world, view) {
-            f.skip("frustum/test_bounds", Still::REASON);
+            World::skip_blocks(f, Still::REASON);
+            f.skip(frustum::TestBounds::INFO.name, Still::REASON);
             self.list.skip_packing(f, Still::REASON);
         } else {
+            let blocks = world.blocks_in_view(f, view); // 1. which blocks of objects are not outside
             let test = frustum::TestBounds {
                 bounds: world.bounds(),
+                blocks,
                 kept: self.kept.all(),
                 view: view.cull(),
                 object_count: world.len() as u32,
             };
-            f.dispatch(test, world.len() as u32); // 1. which objects are outside
-            self.list.pack(f, world, self.kept.all()); // 2. the others, in object order
+            f.fill("frustum/clear_kept", &self.kept, 0);
+            f.dispatch_indirect(test, blocks); // 2. and of those, which objects
+            self.list.pack(f, world, self.kept.all()); // 3. they, in object order
         }
-        world.draw(f, &self.list, view, target); // 3. draw them
+        world.draw(f, &self.list, view, target); // 4. draw them
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The frustum test in plain Rust, and the f64 oracle that bounds it from below.
 
-use shaders::types::{Bounds, CullView, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER};
+use shaders::types::{Bounds, CullView, BLOCK_OBJECTS, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER};
 
 type Vec4 = glam::Vec4;
 type Vec3 = glam::Vec3;
@@ -78,13 +78,23 @@ pub fn left_out(clip: &ClipBox, flags: u32, view: &CullView) -> bool {
     outside_frustum(clip, footprint_widening(flags, view)) || too_small(clip, view)
 }
 
-/// Which objects are kept: 1 or 0 each. Twin of `frustum/test_bounds`.
-pub fn test_bounds(bounds: &[Bounds], view: &CullView) -> Vec<u32> {
+/// Which blocks of objects are in view, ascending. Twin of `frustum/test_blocks`.
+pub fn test_blocks(blocks: &[Bounds], view: &CullView) -> Vec<u32> {
+    let in_view = |block: &Bounds| {
+        let always = block.flags & OBJECT_ALWAYS_KEPT != 0;
+        always || !outside_frustum(&clip_from_bounds(block, view), footprint_widening(block.flags, view))
+    };
+    (0..blocks.len() as u32).filter(|block| in_view(&blocks[*block as usize])).collect()
+}
+
+/// Which objects are kept: 1 or 0 each; those of other blocks than these are not. Twin of `frustum/test_bounds`.
+pub fn test_bounds(bounds: &[Bounds], blocks: &[u32], view: &CullView) -> Vec<u32> {
     let kept = |bound: &Bounds| {
         let always = bound.flags & OBJECT_ALWAYS_KEPT != 0;
         always || !left_out(&clip_from_bounds(bound, view), bound.flags, view)
     };
-    bounds.iter().map(|bound| u32::from(kept(bound))).collect()
+    let in_view = |object: usize| blocks.contains(&(object as u32 / BLOCK_OBJECTS));
+    bounds.iter().enumerate().map(|(object, bound)| u32::from(in_view(object) && kept(bound))).collect()
 }
 
 /// How far inside the view volume a box reaches, in f64 and without rounding: the least over the planes of the largest

@@ -30,7 +30,8 @@ const SETTLED_AFTER: u32 = 3;
 
 struct Hzb {
     gpu: Gpu,
-    seen: Buffer<u32>,
+    /// By object: seen by the last frame, then by this one; they change places.
+    seen: [Buffer<u32>; 2],
     newly: Buffer<u32>,
     early: DrawList,
     late: DrawList,
@@ -42,9 +43,10 @@ struct Hzb {
 /// Makes the method.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let (gpu, world) = (setup.gpu, setup.world);
+    let seen = |name: &str| Buffer::new(gpu, name, world.len(), Placement::Storage);
     Ok(Box::new(Hzb {
         gpu: gpu.clone(),
-        seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
+        seen: [seen("hzb.seen_even")?, seen("hzb.seen_odd")?],
         newly: Buffer::new(gpu, "hzb.newly", world.len(), Placement::Storage)?,
         early: DrawList::new(gpu, "hzb.early", world)?,
         late: DrawList::new(gpu, "hzb.late", world)?,
@@ -65,28 +67,35 @@ impl Method for Hzb {
         if still {
             self.early.skip_packing(f, Still::REASON);
         } else {
-            self.early.pack(f, world, self.seen.all()); // 1. what the last frame saw, in object order
+            self.early.pack(f, world, self.seen[0].all()); // 1. what the last frame saw, in object order
         }
         world.draw(f, &self.early, view, target); // 2. draw it
 
         f.part("");
         if still {
             Pyramid::skip(f, Still::REASON);
+            World::skip_blocks(f, Still::REASON);
             f.skip(hzb::TestBounds::INFO.name, Still::REASON);
         } else {
             pyramid.reduce(f, target); // 3. farthest depth per tile
+            let blocks = world.blocks_in_view(f, view);
+            f.fill("hzb/clear_seen", &self.seen[1], 0);
+            f.fill("hzb/clear_newly", &self.newly, 0);
             let test = hzb::TestBounds {
                 bounds: world.bounds(),
                 levels: pyramid.levels(),
                 pyramid: pyramid.texels(),
-                seen: self.seen.all(),
+                seen_before: self.seen[0].all(),
+                seen: self.seen[1].all(),
                 newly: self.newly.all(),
+                blocks,
                 view: view.cull(),
                 object_count: world.len() as u32,
                 coarsest_level: pyramid.coarsest_level(),
                 constants: hzb::TestBoundsConstants { footprint_texels: self.texels },
             };
-            f.dispatch(test, world.len() as u32); // 4. test all objects
+            f.dispatch_indirect(test, blocks); // 4. test all objects that may be in view
+            self.seen.swap(0, 1);
         }
 
         f.part("late");
@@ -102,7 +111,9 @@ impl Method for Hzb {
 
     fn forget(&mut self) -> Result<()> {
         self.still.forget();
-        self.seen.write(&vec![0; self.seen.len()])?;
+        for seen in &mut self.seen {
+            seen.write(&vec![0; seen.len()])?;
+        }
         Ok(())
     }
 }

@@ -3,8 +3,8 @@
 use crate::frustum::twin::{clip_from_bounds, farthest_along, left_out, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
-    Bounds, CullView, PyramidLevel, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, REDUCED_LEVELS,
-    ROUNDING,
+    Bounds, CullView, PyramidLevel, BLOCK_OBJECTS, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER,
+    REDUCED_LEVELS, ROUNDING,
 };
 
 /// The farthest (smallest) of the source's texels under each texel of the next level.
@@ -144,11 +144,17 @@ pub fn is_visible(bounds: &Bounds, view: &CullView, pyramid: &PyramidTest<'_>) -
     footprint.crosses_near || (!footprint.empty && !pyramid.hides(&footprint))
 }
 
-/// Updates `seen` and returns which objects are newly visible. Twin of `hzb/test_bounds`.
-pub fn test_bounds(bounds: &[Bounds], view: &CullView, pyramid: &PyramidTest<'_>, seen: &mut [u32]) -> Vec<u32> {
+/// Updates `seen` and returns which objects are newly visible. `blocks`: those that are in view. Twin of
+/// `hzb/test_bounds`.
+pub fn test_bounds(
+    (bounds, blocks): (&[Bounds], &[u32]),
+    view: &CullView,
+    pyramid: &PyramidTest<'_>,
+    seen: &mut [u32],
+) -> Vec<u32> {
     let mut newly = Vec::with_capacity(bounds.len());
-    for (bound, seen) in bounds.iter().zip(seen) {
-        let visible = is_visible(bound, view, pyramid);
+    for (object, (bound, seen)) in bounds.iter().zip(seen).enumerate() {
+        let visible = blocks.contains(&(object as u32 / BLOCK_OBJECTS)) && is_visible(bound, view, pyramid);
         newly.push(u32::from(visible && *seen == 0));
         *seen = u32::from(visible);
     }

@@ -93,16 +93,16 @@ impl OcclusionMap {
         self.farthest.build(f);
     }
 
-    /// Flags the objects whose `kept` is not 0 and which the map does not hide.
+    /// Flags the objects whose `kept` is not 0 and which the map does not hide, of the `blocks` in view.
     pub(super) fn test(
         &self,
         f: &mut Frame,
         world: &World,
         view: &View,
-        kept: BufferRef<u32>,
+        (kept, blocks): (BufferRef<u32>, BufferRef<u32>),
         visible: BufferRef<u32>,
     ) {
-        self.farthest.test(f, world, view, kept, visible);
+        self.farthest.test(f, world, view, (kept, blocks), visible);
     }
 
     /// Keeps what the frame drew for the next one.

@@ -21,7 +21,7 @@ use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hybrid::Hybrid;
 use map::{OcclusionMap, Recipe};
 use rapid::Rapid;
-use shaders::{frustum, woc, Stage};
+use shaders::{frustum, woc, BufferRef, Stage};
 
 /// Why `woc` may miss objects.
 pub const WARPED: &str =
@@ -91,8 +91,10 @@ impl Method for Woc {
         }
         let object_count = world.len() as u32;
         let (kept, visible) = (self.kept.all(), self.visible.all());
-        let frustum = frustum::TestBounds { bounds: world.bounds(), kept, view: view.cull(), object_count };
-        f.dispatch(frustum, object_count); // 1. view-frustum culling
+        let blocks = world.blocks_in_view(f, view);
+        let frustum = frustum::TestBounds { bounds: world.bounds(), blocks, kept, view: view.cull(), object_count };
+        f.fill("frustum/clear_kept", &self.kept, 0);
+        f.dispatch_indirect(frustum, blocks); // 1. view-frustum culling
 
         let mut drawn = None;
         match &mut self.rapid {
@@ -108,7 +110,7 @@ impl Method for Woc {
         let mut shown = kept;
         if predicted {
             map.predict(f, world, view, drawn)?; // 3. the depth that the last frame says this one will have
-            map.test(f, world, view, kept, visible); // 4. who lies behind it everywhere
+            map.test(f, world, view, (kept, blocks), visible); // 4. who lies behind it everywhere
             shown = visible;
         } else {
             map.skip_first(f);
@@ -126,7 +128,7 @@ impl Method for Woc {
             hybrid.draw_shown(f, world, view, target); // 8. and the costly ones whose boxes show
         }
         if self.kind == Kind::Exact {
-            self.repair(f, predicted, world, view, target); // 9. and what was culled by mistake
+            self.repair(f, predicted.then_some(blocks), world, view, target); // 9. and what was culled by mistake
         }
         if let Some(map) = &mut self.map {
             map.keep(f, world, view, target); // 10. this is the next one's last frame
@@ -195,17 +197,17 @@ impl Woc {
         })
     }
 
-    /// What the predicted depth hid is tested once more, against the real depth of what was drawn, and drawn if that does not
-    /// hide it: no visible object is missing then, however wrong the warp was.
-    fn repair(&self, f: &mut Frame, predicted: bool, world: &World, view: &View, target: &Target) {
+    /// What the predicted depth hid, of the blocks in view, is tested once more, against the real depth of what was drawn, and drawn if
+    /// that does not hide it: no visible object is missing then, however wrong the warp was.
+    fn repair(&self, f: &mut Frame, predicted: Option<BufferRef<u32>>, world: &World, view: &View, target: &Target) {
         f.part("repair");
-        match &self.map {
-            Some(map) if predicted => {
+        match (&self.map, predicted) {
+            (Some(map), Some(blocks)) => {
                 let (rejected, object_count) = (self.rejected.all(), world.len() as u32);
                 let (objects, excluded) = (self.kept.all(), self.visible.all());
                 f.dispatch(woc::ExcludeObjects { objects, excluded, remaining: rejected, object_count }, object_count);
                 map.observe(f, target);
-                map.test(f, world, view, rejected, self.newly.all());
+                map.test(f, world, view, (rejected, blocks), self.newly.all());
                 self.late.pack(f, world, self.newly.all());
                 world.draw(f, &self.late, view, target);
             }
@@ -216,6 +218,7 @@ impl Woc {
 
     /// Camera and objects unchanged: the last frame's lists hold, and so does the depth kept of it.
     fn same_again(&self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+        World::skip_blocks(f, Still::REASON);
         f.skip(frustum::TestBounds::INFO.name, Still::REASON);
         if let Some(rapid) = &self.rapid {
             rapid.same_again(f, world, view, target);

@@ -1,5 +1,6 @@
 //! A scene on the GPU: vertices, indices, objects, bounds, and what moves them.
 
+mod blocks;
 mod drawn;
 mod still;
 mod ties;
@@ -7,6 +8,7 @@ pub mod twin;
 mod upload;
 mod view;
 
+pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
 pub use drawn::{drawn_objects, Drawn};
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
@@ -15,12 +17,13 @@ pub use view::{split, View};
 
 use crate::pack::DrawList;
 use crate::Result;
+use blocks::Blocks;
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
 use glam::DAffine3;
 use scenes::{Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
-use shaders::{draw, world, BufferRef, ResourceId, Stage};
+use shaders::{draw, frustum, world, BufferRef, ResourceId, Stage};
 
 /// Objects that lie side by side and are drawn with the same kind of primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +46,7 @@ pub struct World {
     object_meshes: Buffer<u32>,
     all_commands: Buffer<DrawCommand>,
     moves: Option<Buffer<MovedObject>>,
+    blocks: Blocks,
     ranges: Vec<Range>,
     host: Host,
 }
@@ -74,6 +78,9 @@ impl World {
         let flat = upload::flatten(scene);
         let storage = Placement::Storage;
         let moving = scene.motion.dynamic_objects().len();
+        let object_of_scene = upload::inverse(&flat.scene_object);
+        let moving_objects: Vec<u32> =
+            scene.motion.dynamic_objects().iter().map(|object| object_of_scene[*object as usize]).collect();
         let moves = if moving == 0 { None } else { Some(Buffer::new(gpu, "world.moves", moving, Placement::Upload)?) };
         let mut transforms = Vec::new();
         scene.motion.transforms_at(0.0, &mut transforms);
@@ -86,9 +93,10 @@ impl World {
             object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
             all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
             moves,
+            blocks: Blocks::new(gpu, &flat.bounds, &moving_objects)?,
             ranges: flat.ranges,
             host: Host {
-                object_of_scene: upload::inverse(&flat.scene_object),
+                object_of_scene,
                 scene_object: flat.scene_object,
                 bounds: flat.world_bounds,
                 boxes: flat.boxes,
@@ -181,6 +189,18 @@ impl World {
             move_count: self.host.move_count,
         };
         f.dispatch(stage, self.host.move_count);
+    }
+
+    /// The list of blocks of [`BLOCK_OBJECTS`](shaders::types::BLOCK_OBJECTS) objects that are not outside the view volume, as
+    /// blocks.glsl lays it out; it begins with the grid to look at them with. Records the stage that finds out, unless that would
+    /// find out nothing.
+    pub fn blocks_in_view(&self, f: &mut Frame, view: &View) -> BufferRef<u32> {
+        self.blocks.in_view(f, view)
+    }
+
+    /// Notes that blocks need not be tested.
+    pub fn skip_blocks(f: &mut Frame, reason: &'static str) {
+        f.skip(frustum::TestBlocks::INFO.name, reason);
     }
 
     /// Draws what a list holds.

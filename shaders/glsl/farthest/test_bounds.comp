@@ -3,7 +3,6 @@
 // Twin: culling/src/farthest/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "farthest.glsl"
 #include "footprint.glsl"
 
@@ -13,9 +12,12 @@ layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[];
 layout(set = 0, binding = 1, scalar) readonly buffer Kept { uint items[]; } kept;
 layout(set = 0, binding = 2, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 3, scalar) readonly buffer Texels { float items[]; } texels;
+// The blocks in view; of the objects of others nothing is written.
+layout(set = 0, binding = 5, scalar) readonly buffer Blocks { uint words[]; } blocks;
 // 1: in the view volume and not hidden.
 layout(set = 0, binding = 4, scalar) writeonly buffer Visible { uint items[]; } visible;
 layout(push_constant, scalar) uniform Push { CullView view; FarthestShape shape; uint object_count; } push;
+#include "blocks.glsl"
 
 uint level_within(uvec2 sides) {
     return uint(findMSB(min(sides.x, sides.y)));
@@ -54,7 +56,7 @@ bool is_visible(Bounds bound) {
 }
 
 void main() {
-    uint object = invocation_index();
+    uint object = object_in_view();
     if (object >= push.object_count) return;
     visible.items[object] = kept.items[object] != 0u && is_visible(bounds.items[object]) ? 1u : 0u;
 }

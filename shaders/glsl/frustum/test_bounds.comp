@@ -2,16 +2,18 @@
 // 29.6.4), done in clip space so that perspective, parallel and oblique projections are one case. Twin: culling/src/frustum/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "cull.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) writeonly buffer Kept { uint items[]; } kept;
+// The blocks in view; objects of others keep what `kept` says.
+layout(set = 0, binding = 2, scalar) readonly buffer Blocks { uint words[]; } blocks;
 layout(push_constant, scalar) uniform Push { CullView view; uint object_count; } push;
+#include "blocks.glsl"
 
 void main() {
-    uint object = invocation_index();
+    uint object = object_in_view();
     if (object >= push.object_count) return;
     Bounds bound = bounds.items[object];
     bool outside = false;

@@ -2,7 +2,6 @@
 // are drawn first in the next frame (Haar & Aaltonen 2015). Twin: culling/src/hzb/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
 #include "footprint.glsl"
 #include "pyramid.glsl"
 
@@ -13,9 +12,14 @@ layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 2, scalar) readonly buffer Pyramid { float items[]; } pyramid;
-layout(set = 0, binding = 3, scalar) buffer Seen { uint items[]; } seen;
+// By object: the last frame saw it, and this one does.
+layout(set = 0, binding = 3, scalar) readonly buffer SeenBefore { uint items[]; } seen_before;
+layout(set = 0, binding = 6, scalar) writeonly buffer Seen { uint items[]; } seen;
 layout(set = 0, binding = 4, scalar) writeonly buffer Newly { uint items[]; } newly;
+// The blocks in view; of the objects of others nothing is written.
+layout(set = 0, binding = 5, scalar) readonly buffer Blocks { uint words[]; } blocks;
 layout(push_constant, scalar) uniform Push { CullView view; uint object_count; uint coarsest_level; } push;
+#include "blocks.glsl"
 
 // True if every texel that the footprint touches is nearer than the box can be.
 bool hidden_by_pyramid(Footprint footprint) {
@@ -43,9 +47,9 @@ bool is_visible(Bounds bound) {
 }
 
 void main() {
-    uint object = invocation_index();
+    uint object = object_in_view();
     if (object >= push.object_count) return;
     bool visible = is_visible(bounds.items[object]);
-    newly.items[object] = visible && seen.items[object] == 0u ? 1u : 0u;
+    newly.items[object] = visible && seen_before.items[object] == 0u ? 1u : 0u;
     seen.items[object] = visible ? 1u : 0u;
 }

@@ -10,6 +10,9 @@ const uint OBJECT_DYNAMIC = 2u;
 // Bounds without a meaning (NaN, infinite): never tested, always kept.
 const uint OBJECT_ALWAYS_KEPT = 4u;
 
+// Objects that lie side by side and have bounds in common.
+const uint BLOCK_OBJECTS = 64u;
+
 // How many visibility flags one invocation of the packing stages walks.
 const uint PACK_CHUNK = 64u;
 

@@ -96,21 +96,25 @@ float farthest_around(vec2 source, float found) {
     return farthest == DEPTH_FAR ? DEPTH_FAR : min(found, new_depth(pixel, farthest));
 }
 
-// Figure 3: the depth of what moves to p, searched from where the motion `seed` would come from.
+// Figure 3: the depth of what moves to p, searched from where the motion `seed` would come from. What is found is looked around
+// behind the loop: a CPU runs all that stands in it as often as the slowest of the invocations that it runs side by side.
 float fixed_point_search(vec2 p, vec2 seed) {
     vec2 place = inside(p - seed);
     TexelMotion motion = motion_at(place);
+    vec2 source = place;
+    bool found = false;
     for (uint k = 1u; motion.depth > DEPTH_FAR; k++) {
-        vec2 source = p - motion.offset;
+        source = p - motion.offset;
         precise vec2 miss = place - source;
         precise float distance_squared = miss.x * miss.x + miss.y * miss.y;
         float tolerance = k < ITERATIONS ? THRESHOLD : WARP_CRACK;
-        if (distance_squared < tolerance * tolerance) return farthest_around(source, motion.depth);
-        if (k >= ITERATIONS) return DEPTH_HOLE;
+        found = distance_squared < tolerance * tolerance;
+        if (found || k >= ITERATIONS) break;
         place = inside(source);
         motion = motion_at(place);
     }
-    return DEPTH_FAR;
+    if (found) return farthest_around(source, motion.depth);
+    return motion.depth > DEPTH_FAR ? DEPTH_HOLE : DEPTH_FAR;
 }
 
 // Point `index` of `count`, one in each of `count` strips across and, for powers of two, down (Hammersley).

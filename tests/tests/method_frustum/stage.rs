@@ -1,24 +1,56 @@
 //! `frustum/test_bounds` on random boxes and cameras of every kind.
 
 use culling::frustum::twin;
+use culling::world::{listed_blocks, unlisted_blocks};
 use culling::View;
 use engine::{Buffer, Gpu, Placement};
 use harness::worlds::special_projections;
 use harness::{gpu, Random};
 use scenes::{Pose, Shot};
-use shaders::types::{Bounds, CullView, OBJECT_ALWAYS_KEPT};
+use shaders::types::{Bounds, CullView, BLOCK_OBJECTS, OBJECT_ALWAYS_KEPT};
 
 const BOXES: usize = 10_000;
 
-fn run(gpu: &Gpu, bounds: &[Bounds], view: CullView) -> Vec<u32> {
+/// Which boxes are kept, of those in `blocks`; others stay 7.
+fn run(gpu: &Gpu, bounds: &[Bounds], blocks: &[u32], view: CullView) -> Vec<u32> {
     let input = Buffer::with_data(gpu, "test.bounds", bounds, Placement::Storage).unwrap();
     let kept = Buffer::with_data(gpu, "test.kept", &vec![7u32; bounds.len()], Placement::Storage).unwrap();
+    let list = Buffer::with_data(gpu, "test.blocks", &list_of(blocks), Placement::Storage).unwrap();
+    let object_count = bounds.len() as u32;
     let stage =
-        shaders::frustum::TestBounds { bounds: input.all(), kept: kept.all(), view, object_count: bounds.len() as u32 };
+        shaders::frustum::TestBounds { bounds: input.all(), blocks: list.all(), kept: kept.all(), view, object_count };
     let mut f = gpu.frame();
-    f.dispatch(stage, bounds.len() as u32);
+    f.dispatch_indirect(stage, list.all());
     f.finish().unwrap();
     kept.read().unwrap()
+}
+
+/// Which boxes are in view as bounds of blocks, in order.
+fn run_blocks(gpu: &Gpu, bounds: &[Bounds], view: CullView) -> Vec<u32> {
+    let input = Buffer::with_data(gpu, "test.bounds", bounds, Placement::Storage).unwrap();
+    let header = [0, 1, 1, 0];
+    let words: Vec<u32> = header.into_iter().chain(bounds.iter().map(|_| 7)).collect();
+    let list = Buffer::with_data(gpu, "test.blocks", &words, Placement::Storage).unwrap();
+    let block_count = bounds.len() as u32;
+    let stage = shaders::frustum::TestBlocks { bounds: input.all(), blocks: list.all(), view, block_count };
+    let mut f = gpu.frame();
+    f.dispatch(stage, block_count);
+    f.finish().unwrap();
+    let list = list.read().unwrap();
+    let mut blocks = unlisted_blocks(&list).to_vec();
+    blocks.sort_unstable();
+    assert_eq!(list[..3], [blocks.len() as u32, 1, 1], "the grid is not one work group a block");
+    blocks
+}
+
+/// A list of some blocks, as stages take it.
+fn list_of(blocks: &[u32]) -> Vec<u32> {
+    let header = &listed_blocks(blocks.len() as u32)[..4];
+    [header, blocks].concat()
+}
+
+fn all_blocks() -> Vec<u32> {
+    (0..BOXES.div_ceil(BLOCK_OBJECTS as usize) as u32).collect()
 }
 
 /// Boxes around a camera, many of them touching a plane of its view volume to within roundings.
@@ -66,8 +98,13 @@ fn boxes_are_kept_as_twin_and_oracle_say() {
             let shot = Shot { pose, projection, seconds: 0.0 };
             let view = View::new(&shot, [161, 97], 0, gpu.snap_px());
             let bounds = boxes(&mut random, &shot, &view);
-            let kept = run(&gpu, &bounds, view.cull());
-            let twin = twin::test_bounds(&bounds, &view.cull());
+            let kept = run(&gpu, &bounds, &all_blocks(), view.cull());
+            let twin = twin::test_bounds(&bounds, &all_blocks(), &view.cull());
+            let kept_boxes =
+                |kept: &[u32]| (0..BOXES as u32).filter(|index| kept[*index as usize] == 1).collect::<Vec<_>>();
+            assert_eq!(kept_boxes(&twin), twin::test_blocks(&bounds, &view.cull()));
+            let blocks = run_blocks(&gpu, &bounds, view.cull());
+            assert_eq!(kept_boxes(&kept), blocks, "{name}: blocks are tested otherwise than objects");
             for ((bound, kept), twin) in bounds.iter().zip(&kept).zip(&twin) {
                 let margin = twin::oracle_margin(bound, &view.cull());
                 all += 1;
@@ -90,6 +127,27 @@ fn boxes_are_kept_as_twin_and_oracle_say() {
 }
 
 #[test]
+fn objects_of_blocks_out_of_view_are_not_looked_at() {
+    let gpu = gpu();
+    let mut random = Random::new(23);
+    let shot = Shot {
+        pose: Pose { position: random.vector(), rotation: random.turn() },
+        projection: special_projections()[0].1,
+        seconds: 0.0,
+    };
+    let view = View::new(&shot, [161, 97], 0, gpu.snap_px());
+    let bounds = boxes(&mut random, &shot, &view);
+    let blocks: Vec<u32> = all_blocks().into_iter().filter(|_| random.below(2) == 1).collect();
+    let kept = run(&gpu, &bounds, &blocks, view.cull());
+    let whole = run(&gpu, &bounds, &all_blocks(), view.cull());
+    for (object, (kept, whole)) in kept.iter().zip(whole).enumerate() {
+        let looked_at = blocks.contains(&(object as u32 / BLOCK_OBJECTS));
+        assert_eq!(*kept, if looked_at { whole } else { 7 }, "object {object}");
+    }
+    assert!(kept.contains(&1) && kept.contains(&0) && kept.contains(&7));
+}
+
+#[test]
 fn what_is_left_out_as_too_small_is_what_the_twin_leaves_out() {
     let gpu = gpu();
     let mut random = Random::new(22);
@@ -100,8 +158,8 @@ fn what_is_left_out_as_too_small_is_what_the_twin_leaves_out() {
         let view = View::new(&shot, [161, 97], 0, gpu.snap_px());
         let bounds = boxes(&mut random, &shot, &view);
         let (whole, detailed) = (view.cull(), view.without_details(9.0).cull());
-        let (kept, without) = (run(&gpu, &bounds, whole), run(&gpu, &bounds, detailed));
-        let twin = twin::test_bounds(&bounds, &detailed);
+        let (kept, without) = (run(&gpu, &bounds, &all_blocks(), whole), run(&gpu, &bounds, &all_blocks(), detailed));
+        let twin = twin::test_bounds(&bounds, &all_blocks(), &detailed);
         for index in 0..bounds.len() {
             assert!(without[index] <= kept[index], "{:?} is kept because it is small", bounds[index]);
             left_out += kept[index] - without[index];
@@ -131,7 +189,7 @@ fn boxes_without_a_meaning_are_kept() {
             });
         }
     }
-    let kept = run(&gpu, &bounds, view);
+    let kept = run(&gpu, &bounds, &[0], view);
     for (bound, kept) in bounds.iter().zip(kept) {
         assert!(kept == 1 || bound.flags == 0, "{bound:?} has no meaning, but was culled");
     }

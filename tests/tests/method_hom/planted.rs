@@ -52,14 +52,18 @@ impl Method for Broken {
         }
         f.clear(target);
         let bounds = world.bounds();
-        f.dispatch(shaders::frustum::TestBounds { bounds, kept, view: view.cull(), object_count }, object_count);
+        let blocks = world.blocks_in_view(f, view);
+        f.dispatch(
+            shaders::frustum::TestBounds { bounds, blocks, kept, view: view.cull(), object_count },
+            object_count,
+        );
         in_view.pack(f, world, kept);
         world.draw_depth(f, in_view, view, target);
         if self.defect != Defect::DepthOfTheLastFrame || !later {
             map.fill_from_depth(f, target);
         }
         map.build(f);
-        map.test(f, world, view, kept, visible);
+        map.test(f, world, view, (kept, blocks), visible);
         list.pack(f, world, visible);
         world.draw(f, list, view, target);
         Ok(())

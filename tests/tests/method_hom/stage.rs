@@ -20,19 +20,22 @@ fn run(gpu: &Gpu, input: &Occludees, kept: &[u32], kind: MapKind) -> Vec<u32> {
     let levels = Buffer::with_data(gpu, "test.levels", &map.levels, storage).unwrap();
     let bounds = Buffer::with_data(gpu, "test.bounds", &input.bounds, storage).unwrap();
     let kept = Buffer::with_data(gpu, "test.kept", kept, storage).unwrap();
+    let blocks = culling::world::listed_blocks((BOXES as u32).div_ceil(shaders::types::BLOCK_OBJECTS));
+    let blocks = Buffer::with_data(gpu, "test.blocks", &blocks, storage).unwrap();
     let visible = Buffer::with_data(gpu, "test.visible", &vec![7u32; BOXES], storage).unwrap();
     let stage = shaders::farthest::TestBounds {
         bounds: bounds.all(),
         kept: kept.all(),
         levels: levels.all(),
         texels: texels.all(),
+        blocks: blocks.all(),
         visible: visible.all(),
         view: input.view,
         shape: map.shape,
         object_count: BOXES as u32,
     };
     let mut f = gpu.frame();
-    f.dispatch(stage, BOXES as u32);
+    f.dispatch_indirect(stage, blocks.all());
     f.finish().unwrap();
     visible.read().unwrap()
 }

@@ -29,21 +29,26 @@ fn run(gpu: &Gpu, input: &Input) -> [Vec<u32>; 2] {
         Buffer::with_data(gpu, "test.texels", &twin::pyramid(&input.occludees.depth, SIZE, &levels), storage).unwrap();
     let levels = Buffer::with_data(gpu, "test.levels", &levels, storage).unwrap();
     let bounds = Buffer::with_data(gpu, "test.bounds", &input.occludees.bounds, storage).unwrap();
-    let seen = Buffer::with_data(gpu, "test.seen", &input.seen, storage).unwrap();
+    let seen = Buffer::with_data(gpu, "test.seen", &vec![7u32; BOXES], storage).unwrap();
+    let blocks = culling::world::listed_blocks((BOXES as u32).div_ceil(shaders::types::BLOCK_OBJECTS));
+    let blocks = Buffer::with_data(gpu, "test.blocks", &blocks, storage).unwrap();
+    let seen_before = Buffer::with_data(gpu, "test.seen_before", &input.seen, storage).unwrap();
     let newly = Buffer::with_data(gpu, "test.newly", &vec![7u32; BOXES], storage).unwrap();
     let stage = shaders::hzb::TestBounds {
         bounds: bounds.all(),
         levels: levels.all(),
         pyramid: texels.all(),
+        seen_before: seen_before.all(),
         seen: seen.all(),
         newly: newly.all(),
+        blocks: blocks.all(),
         view: input.occludees.view,
         object_count: BOXES as u32,
         coarsest_level,
         constants: shaders::hzb::TestBoundsConstants { footprint_texels: input.texels },
     };
     let mut f = gpu.frame();
-    f.dispatch(stage, BOXES as u32);
+    f.dispatch_indirect(stage, blocks.all());
     f.finish().unwrap();
     [seen.read().unwrap(), newly.read().unwrap()]
 }

@@ -64,11 +64,12 @@ impl Method for Broken {
         let (kept, visible, object_count) = (self.kept.all(), self.visible.all(), world.len() as u32);
         world.update(f);
         f.clear(target);
-        let bounds = world.bounds();
+        let (bounds, blocks) = (world.bounds(), world.blocks_in_view(f, view));
         if self.defect == Defect::NothingComesBack && self.frames > 1 {
             f.copy("broken/seen", visible, kept);
         } else {
-            f.dispatch(frustum::TestBounds { bounds, kept, view: view.cull(), object_count }, object_count);
+            f.fill("frustum/clear_kept", kept, 0);
+            f.dispatch_indirect(frustum::TestBounds { bounds, blocks, kept, view: view.cull(), object_count }, blocks);
         }
         let seen = warp.has_last();
         if seen && (self.defect != Defect::OldMap || self.frames == 1) {
@@ -76,13 +77,13 @@ impl Method for Broken {
             let refinement = Refinement { erode: true, close: true, drawn: None };
             if self.defect == Defect::NearHoles {
                 // The bits of 1.0: no hole is far, nor is anything else.
-                f.fill("broken/near", warped, 0x3f80_0000);
+                f.fill("broken/near", &*warped, 0x3f80_0000);
             }
             warp.refine(f, warped.all(), map.base(), refinement);
             map.build(f);
         }
         if seen {
-            map.test(f, world, view, kept, visible);
+            map.test(f, world, view, (kept, blocks), visible);
         }
         self.list.pack(f, world, if seen { visible } else { kept });
         world.draw(f, &self.list, view, target);
