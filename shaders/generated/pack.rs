@@ -150,6 +150,9 @@ pub struct WriteCommands {
     pub meshes: BufferRef<types::MeshRange>,
     /// `commands` in GLSL.
     pub commands: BufferRef<types::DrawCommand>,
+    /// First_object: the packed range starts there; commands of earlier ranges lie before it.
+    /// How many objects of each chunk are flagged: most chunks have none, and no invocation looks behind the last.
+    pub counts: BufferRef<u32>,
     /// `first_object` in GLSL.
     pub first_object: u32,
     /// `object_count` in GLSL.
@@ -169,6 +172,7 @@ impl Stage for WriteCommands {
             BindingInfo { name: "object_meshes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "meshes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "commands", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "counts", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 8,
         constants: &[],
@@ -188,6 +192,7 @@ impl Stage for WriteCommands {
                 self.object_meshes.into(),
                 self.meshes.into(),
                 self.commands.into(),
+                self.counts.into(),
             ],
             bytemuck::bytes_of(&push),
             vec![],

@@ -122,6 +122,7 @@ impl DrawList {
         f.dispatch_groups(pack::ScanCounts { counts, starts, total, chunk_count: chunks, constants }, 1);
         let write = pack::WriteCommands {
             flags,
+            counts,
             starts,
             object_meshes: world.object_meshes(),
             meshes: world.meshes(),

@@ -12,6 +12,8 @@ layout(set = 0, binding = 2, scalar) readonly buffer ObjectMeshes { uint items[]
 layout(set = 0, binding = 3, scalar) readonly buffer Meshes { MeshRange items[]; } meshes;
 layout(set = 0, binding = 4, scalar) writeonly buffer Commands { DrawCommand items[]; } commands;
 // first_object: the packed range starts there; commands of earlier ranges lie before it.
+// How many objects of each chunk are flagged: most chunks have none, and no invocation looks behind the last.
+layout(set = 0, binding = 5, scalar) readonly buffer Counts { uint items[]; } counts;
 layout(push_constant, scalar) uniform Push { uint first_object; uint object_count; } push;
 
 void main() {
@@ -20,8 +22,10 @@ void main() {
     if (first >= push.object_count) return;
     uint end = min(first + PACK_CHUNK, push.object_count);
     uint slot = push.first_object + starts.items[chunk];
-    for (uint object = push.first_object + first; object < push.first_object + end; object++) {
+    uint left = counts.items[chunk];
+    for (uint object = push.first_object + first; left != 0u && object < push.first_object + end; object++) {
         if (flags.items[object] == 0u) continue;
+        left--;
         MeshRange mesh = meshes.items[object_meshes.items[object]];
         commands.items[slot++] = DrawCommand(mesh.index_count, 1u, mesh.first_index, mesh.vertex_offset, object);
     }

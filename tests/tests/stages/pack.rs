@@ -46,6 +46,7 @@ fn run(
     f.dispatch_groups(scan, 1);
     let write = WriteCommands {
         flags: flags.all(),
+        counts: counts.all(),
         starts: starts.all(),
         object_meshes: object_meshes.all(),
         meshes: meshes.all(),
