@@ -5,7 +5,7 @@ use crate::error::Named;
 use crate::frame::{StageTime, Statistics};
 use crate::gpu::Vulkan;
 use crate::image::Target;
-use crate::pipeline::{descriptor_type, DrawState, Pipeline};
+use crate::pipeline::{descriptor_type, DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
 use crate::recorder::{IndexedIndirect, Op, Recorded};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
@@ -197,7 +197,11 @@ impl Recording<'_> {
         self.rendering(target, vk::AttachmentLoadOp::LOAD, || {
             // SAFETY: inside a rendering with the formats the pipeline was made for; buffers are alive and in range.
             unsafe {
-                device.cmd_bind_vertex_buffers(self.commands, 0, &[vertices], &[vertices_at]);
+                device.cmd_bind_vertex_buffers(self.commands, VERTEX_BINDING, &[vertices], &[vertices_at]);
+                if stage.info.instance_stride > 0 {
+                    let (instances, at, _) = range(&draw.instances);
+                    device.cmd_bind_vertex_buffers(self.commands, INSTANCE_BINDING, &[instances], &[at]);
+                }
                 device.cmd_bind_index_buffer(self.commands, indices, indices_at, vk::IndexType::UINT32);
                 match draw.count {
                     Some(count) => device.cmd_draw_indexed_indirect_count(

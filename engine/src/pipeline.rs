@@ -243,20 +243,23 @@ fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
     formats.map(|format| format.vulkan(state.depth)).collect()
 }
 
+/// Where the vertex buffer and the instance buffer are bound.
+pub(crate) const VERTEX_BINDING: u32 = 0;
+pub(crate) const INSTANCE_BINDING: u32 = 1;
+
 fn vertex_layout(
     info: &StageInfo,
 ) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
-    if info.vertex.is_empty() {
-        return (Vec::new(), Vec::new());
-    }
-    let binding = vk::VertexInputBindingDescription {
-        binding: 0,
-        stride: info.vertex_stride,
-        input_rate: vk::VertexInputRate::VERTEX,
-    };
-    let attribute = |attribute: &shaders::VertexAttribute| vk::VertexInputAttributeDescription {
+    let rates = [
+        (VERTEX_BINDING, info.vertex_stride, vk::VertexInputRate::VERTEX),
+        (INSTANCE_BINDING, info.instance_stride, vk::VertexInputRate::INSTANCE),
+    ];
+    let used = rates.into_iter().filter(|(_, stride, _)| *stride > 0);
+    let bindings =
+        used.map(|(binding, stride, input_rate)| vk::VertexInputBindingDescription { binding, stride, input_rate });
+    let attribute = |binding: u32, attribute: &shaders::VertexAttribute| vk::VertexInputAttributeDescription {
         location: attribute.location,
-        binding: 0,
+        binding,
         format: match attribute.format {
             VertexFormat::Float2 => vk::Format::R32G32_SFLOAT,
             VertexFormat::Float3 => vk::Format::R32G32B32_SFLOAT,
@@ -266,7 +269,9 @@ fn vertex_layout(
         },
         offset: attribute.offset,
     };
-    (vec![binding], info.vertex.iter().map(attribute).collect())
+    let of_vertex = info.vertex.iter().map(|one| attribute(VERTEX_BINDING, one));
+    let of_instance = info.instance.iter().map(|one| attribute(INSTANCE_BINDING, one));
+    (bindings.collect(), of_vertex.chain(of_instance).collect())
 }
 
 /// Specialization constants in the form Vulkan takes them.

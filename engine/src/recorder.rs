@@ -25,6 +25,8 @@ pub enum Primitives {
 pub struct IndexedIndirect {
     /// Vertices, as the pipeline's generated vertex struct.
     pub vertices: Bound,
+    /// What goes on once an instance, as the pipeline's generated instance struct; not looked at by pipelines without one.
+    pub instances: Bound,
     /// 32-bit indices.
     pub indices: Bound,
     /// Indexed indirect commands, 20 bytes each, tightly packed.
@@ -201,6 +203,9 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
         }
         Op::Draw { stage, draw, target } => {
             let mut uses = bindings(stage, Point::Drawing);
+            if stage.info.instance_stride > 0 {
+                uses.push(Use::read(resource(&draw.instances), Point::Vertices));
+            }
             uses.push(Use::read(resource(&draw.commands), Point::Indirect));
             uses.extend(draw.count.map(|count| Use::read(count.id, Point::Indirect)));
             uses.push(Use::read(resource(&draw.vertices), Point::Vertices));

@@ -157,6 +157,7 @@ impl Check {
         if draws {
             let draw = IndexedIndirect {
                 vertices: self.corners.all().into(),
+                instances: self.corners.all().into(),
                 indices: self.corners.all().into(),
                 commands: self.commands.all().into(),
                 count: None,

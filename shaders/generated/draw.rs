@@ -8,8 +8,6 @@ use crate::contract::*;
 /// Every drawn object's depth and nothing else, the same to the bit as that of draw/objects: a depth prepass.
 #[derive(Clone, Copy, Debug)]
 pub struct Depth {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `view` in GLSL.
     pub view: types::View,
 }
@@ -18,12 +16,7 @@ impl Stage for Depth {
     const INFO: &'static StageInfo = &StageInfo {
         name: "draw/depth",
         modules: &[ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/depth.vert.spv") }],
-        bindings: &[BindingInfo {
-            name: "objects",
-            binding: 0,
-            kind: BindingKind::StorageBuffer,
-            access: Access::Read,
-        }],
+        bindings: &[],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -32,12 +25,21 @@ impl Stage for Depth {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[],
     };
 
     fn bind(&self) -> BoundStage {
         let push = DepthPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -70,13 +72,39 @@ const _: () = {
     assert!(size_of::<DepthVertex>() == 16);
 };
 
+/// One instance of [`Depth`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DepthInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(DepthInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(DepthInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(DepthInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(DepthInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(DepthInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(DepthInstance, colour) == 60);
+    assert!(size_of::<DepthInstance>() == 64);
+};
+
 /// Every drawn object, Lambert-shaded, with early fragment tests.
 ///
 /// The colour. Occluded fragments stop before this shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Objects {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `view` in GLSL.
     pub view: types::View,
 }
@@ -88,12 +116,7 @@ impl Stage for Objects {
             ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/objects.vert.spv") },
             ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/objects.frag.spv") },
         ],
-        bindings: &[BindingInfo {
-            name: "objects",
-            binding: 0,
-            kind: BindingKind::StorageBuffer,
-            access: Access::Read,
-        }],
+        bindings: &[],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -102,12 +125,21 @@ impl Stage for Objects {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[0],
     };
 
     fn bind(&self) -> BoundStage {
         let push = ObjectsPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -140,14 +172,40 @@ const _: () = {
     assert!(size_of::<ObjectsVertex>() == 16);
 };
 
+/// One instance of [`Objects`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(ObjectsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(ObjectsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(ObjectsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(ObjectsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(ObjectsInstance, colour) == 60);
+    assert!(size_of::<ObjectsInstance>() == 64);
+};
+
 /// Draw/objects that flags each object with a fragment that passes the early tests: colour, depth and
 /// visibility in one pass (EOVC thesis III.2).
 ///
 /// The colour, and a flag for the object. Occluded fragments stop before this shader.
 #[derive(Clone, Copy, Debug)]
 pub struct ObjectsAndFlags {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `visible` in GLSL.
     pub visible: BufferRef<u32>,
     /// `view` in GLSL.
@@ -161,10 +219,12 @@ impl Stage for ObjectsAndFlags {
             ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/objects_and_flags.vert.spv") },
             ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/objects_and_flags.frag.spv") },
         ],
-        bindings: &[
-            BindingInfo { name: "objects", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "visible", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
-        ],
+        bindings: &[BindingInfo {
+            name: "visible",
+            binding: 1,
+            kind: BindingKind::StorageBuffer,
+            access: Access::Write,
+        }],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -173,12 +233,21 @@ impl Stage for ObjectsAndFlags {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[0],
     };
 
     fn bind(&self) -> BoundStage {
         let push = ObjectsAndFlagsPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into(), self.visible.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![self.visible.into()], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -211,13 +280,39 @@ const _: () = {
     assert!(size_of::<ObjectsAndFlagsVertex>() == 16);
 };
 
+/// One instance of [`ObjectsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsAndFlagsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(ObjectsAndFlagsInstance, colour) == 60);
+    assert!(size_of::<ObjectsAndFlagsInstance>() == 64);
+};
+
 /// Draw/objects with the item buffer beside the colour. For the truth and for methods that need it.
 ///
 /// The colour, and who owns the pixel. Occluded fragments stop before this shader.
 #[derive(Clone, Copy, Debug)]
 pub struct ObjectsAndItems {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `view` in GLSL.
     pub view: types::View,
 }
@@ -229,12 +324,7 @@ impl Stage for ObjectsAndItems {
             ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/objects_and_items.vert.spv") },
             ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/objects_and_items.frag.spv") },
         ],
-        bindings: &[BindingInfo {
-            name: "objects",
-            binding: 0,
-            kind: BindingKind::StorageBuffer,
-            access: Access::Read,
-        }],
+        bindings: &[],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -243,12 +333,21 @@ impl Stage for ObjectsAndItems {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[0, 1],
     };
 
     fn bind(&self) -> BoundStage {
         let push = ObjectsAndItemsPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -281,13 +380,39 @@ const _: () = {
     assert!(size_of::<ObjectsAndItemsVertex>() == 16);
 };
 
+/// One instance of [`ObjectsAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsAndItemsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(ObjectsAndItemsInstance, colour) == 60);
+    assert!(size_of::<ObjectsAndItemsInstance>() == 64);
+};
+
 /// Draw/objects_and_flags with the item buffer beside the colour.
 ///
 /// The colour, who owns the pixel, and a flag for the object.
 #[derive(Clone, Copy, Debug)]
 pub struct ObjectsItemsAndFlags {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `visible` in GLSL.
     pub visible: BufferRef<u32>,
     /// `view` in GLSL.
@@ -307,10 +432,12 @@ impl Stage for ObjectsItemsAndFlags {
                 spirv: include_bytes!("spirv/draw/objects_items_and_flags.frag.spv"),
             },
         ],
-        bindings: &[
-            BindingInfo { name: "objects", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "visible", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
-        ],
+        bindings: &[BindingInfo {
+            name: "visible",
+            binding: 1,
+            kind: BindingKind::StorageBuffer,
+            access: Access::Write,
+        }],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -319,12 +446,21 @@ impl Stage for ObjectsItemsAndFlags {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[0, 1],
     };
 
     fn bind(&self) -> BoundStage {
         let push = ObjectsItemsAndFlagsPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into(), self.visible.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![self.visible.into()], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -357,13 +493,39 @@ const _: () = {
     assert!(size_of::<ObjectsItemsAndFlagsVertex>() == 16);
 };
 
+/// One instance of [`ObjectsItemsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ObjectsItemsAndFlagsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(ObjectsItemsAndFlagsInstance, colour) == 60);
+    assert!(size_of::<ObjectsItemsAndFlagsInstance>() == 64);
+};
+
 /// One count a shaded fragment, added up. For pictures, never in timed frames.
 ///
 /// Adds one where a fragment passes the early tests.
 #[derive(Clone, Copy, Debug)]
 pub struct Overdraw {
-    /// `objects` in GLSL.
-    pub objects: BufferRef<types::Object>,
     /// `view` in GLSL.
     pub view: types::View,
 }
@@ -375,12 +537,7 @@ impl Stage for Overdraw {
             ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/overdraw.vert.spv") },
             ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/overdraw.frag.spv") },
         ],
-        bindings: &[BindingInfo {
-            name: "objects",
-            binding: 0,
-            kind: BindingKind::StorageBuffer,
-            access: Access::Read,
-        }],
+        bindings: &[],
         push_size: 88,
         constants: &[],
         local_size: [0, 0, 0],
@@ -389,12 +546,21 @@ impl Stage for Overdraw {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
         ],
         vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
         outputs: &[0],
     };
 
     fn bind(&self) -> BoundStage {
         let push = OverdrawPush { view: self.view };
-        BoundStage::new(Self::INFO, vec![self.objects.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(Self::INFO, vec![], bytemuck::bytes_of(&push), vec![])
     }
 }
 
@@ -425,4 +591,32 @@ const _: () = {
     assert!(std::mem::offset_of!(OverdrawVertex, position) == 0);
     assert!(std::mem::offset_of!(OverdrawVertex, normal_snorm16) == 12);
     assert!(size_of::<OverdrawVertex>() == 16);
+};
+
+/// One instance of [`Overdraw`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct OverdrawInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(OverdrawInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(OverdrawInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(OverdrawInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(OverdrawInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(OverdrawInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(OverdrawInstance, colour) == 60);
+    assert!(size_of::<OverdrawInstance>() == 64);
 };

@@ -34,6 +34,8 @@ impl Stage for CopyDepth {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -94,6 +96,8 @@ impl Stage for SpinPixels {
         local_size: [0, 0, 0],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[0],
     };
 
@@ -131,6 +135,8 @@ impl Stage for SpinWords {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

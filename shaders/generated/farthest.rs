@@ -37,6 +37,8 @@ impl Stage for DoubleSquares {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -95,6 +97,8 @@ impl Stage for FillFromDepth {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -185,6 +189,8 @@ impl Stage for TestBounds {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

@@ -40,6 +40,8 @@ impl Stage for ReduceDepth {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -112,6 +114,8 @@ impl Stage for ReduceLevels {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -182,6 +186,8 @@ impl Stage for TestBounds {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

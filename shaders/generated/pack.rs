@@ -35,6 +35,8 @@ impl Stage for CountFlags {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -95,6 +97,8 @@ impl Stage for ScanCounts {
         local_size: [8, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -179,6 +183,8 @@ impl Stage for WriteCommands {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -252,6 +258,8 @@ impl Stage for WriteIndices {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -325,6 +333,8 @@ impl Stage for WriteInstances {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

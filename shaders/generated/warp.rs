@@ -34,6 +34,8 @@ impl Stage for BoundLevels {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -109,6 +111,8 @@ impl Stage for BoundMotion {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -217,6 +221,8 @@ impl Stage for ErodeDepth {
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -323,6 +329,8 @@ impl Stage for MeasureMotion {
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -416,6 +424,8 @@ impl Stage for OrientAxes {
         local_size: [1, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -519,6 +529,8 @@ impl Stage for SearchDepth {
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -683,6 +695,8 @@ impl Stage for TightenBounds {
         local_size: [8, 8, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

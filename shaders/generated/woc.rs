@@ -37,6 +37,8 @@ impl Stage for ExcludeObjects {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -109,6 +111,8 @@ impl Stage for FindRapid {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -188,6 +192,8 @@ impl Stage for HoldCandidates {
         local_size: [1, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 
@@ -251,6 +257,8 @@ impl Stage for LeaveRapid {
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
         outputs: &[],
     };
 

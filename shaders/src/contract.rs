@@ -120,7 +120,7 @@ pub enum VertexFormat {
     Uint,
 }
 
-/// One vertex attribute of the single, interleaved vertex buffer.
+/// One attribute of the interleaved vertex buffer, or of the interleaved instance buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexAttribute {
     /// The GLSL name.
@@ -129,7 +129,7 @@ pub struct VertexAttribute {
     pub location: u32,
     /// How it lies in memory.
     pub format: VertexFormat,
-    /// Bytes from the start of the vertex.
+    /// Bytes from the start of the vertex or instance.
     pub offset: u32,
 }
 
@@ -161,6 +161,10 @@ pub struct StageInfo {
     pub vertex: &'static [VertexAttribute],
     /// Bytes of one vertex; 0 if the pipeline takes none.
     pub vertex_stride: u32,
+    /// Attributes that go on once an instance, by location: GLSL inputs named `instance_…`, without that.
+    pub instance: &'static [VertexAttribute],
+    /// Bytes of one instance; 0 if the pipeline takes none.
+    pub instance_stride: u32,
     /// Locations that the fragment shader writes, ascending.
     pub outputs: &'static [u32],
 }

@@ -54,6 +54,9 @@ fn touches(op: &Op) -> Vec<Touch> {
             all.push(touch(id(&draw.commands), Point::Indirect, true, false));
             all.extend(draw.count.map(|count| touch(count.id, Point::Indirect, true, false)));
             all.push(touch(id(&draw.vertices), Point::Vertices, true, false));
+            if bound.info.instance_stride > 0 {
+                all.push(touch(id(&draw.instances), Point::Vertices, true, false));
+            }
             all.push(touch(id(&draw.indices), Point::Vertices, true, false));
             all.extend(target(to));
             all

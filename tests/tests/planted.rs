@@ -322,6 +322,7 @@ fn a_list_that_claims_more_than_it_holds_is_an_error() {
     let count = Buffer::with_data(&gpu, "test.count", &[world.len() as u32 + 1], Placement::Storage).unwrap();
     let draw = IndexedIndirect {
         vertices: world.vertices().into(),
+        instances: world.objects().into(),
         indices: world.indices().into(),
         commands: commands.all().into(),
         count: Some(count.all()),

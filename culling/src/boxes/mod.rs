@@ -51,6 +51,7 @@ impl BoxShape {
     pub fn draw(&self, commands: BufferRef<DrawCommand>, draws: u32) -> IndexedIndirect {
         IndexedIndirect {
             vertices: self.corners.all().into(),
+            instances: self.corners.all().into(),
             indices: self.corners.all().into(),
             commands: commands.into(),
             // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).

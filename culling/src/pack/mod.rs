@@ -197,6 +197,7 @@ impl DrawList {
             let count = self.everything.get(index).unwrap_or(&self.totals[index]);
             IndexedIndirect {
                 vertices: world.vertices().into(),
+                instances: world.objects().into(),
                 indices: world.indices().into(),
                 commands: self.commands.all().from(range.first as usize).into(),
                 count: if exact.is_some() { None } else { Some(count.all()) },

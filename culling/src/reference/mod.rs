@@ -72,6 +72,7 @@ impl Method for Reference {
         for (range, total) in world.ranges().iter().zip(&self.counts) {
             let draw = IndexedIndirect {
                 vertices: world.vertices().into(),
+                instances: world.objects().into(),
                 indices: world.indices().into(),
                 commands: self.commands.all().from(range.first as usize).into(),
                 count: Some(total.all()),

@@ -213,6 +213,7 @@ impl RangeLists {
         self.assert_made_for(world);
         self.kinds.iter().map(move |kind| IndexedIndirect {
             vertices: world.vertices().into(),
+            instances: world.objects().into(),
             indices: world.indices().into(),
             commands: commands.all().from(range * self.room + kind.objects.first as usize).into(),
             count: Some(kind.totals.all().from(total)),

@@ -213,7 +213,7 @@ impl World {
     /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it.
     pub fn draw_depth(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
         for indirect in list.draws(self) {
-            let stage = draw::Depth { objects: self.objects.all(), view: view.gpu() };
+            let stage = draw::Depth { view: view.gpu() };
             f.draw_unshown(stage, indirect, &target.depth_only());
         }
     }
@@ -239,6 +239,7 @@ impl World {
         for range in &self.ranges {
             let draw = IndexedIndirect {
                 vertices: self.vertices.all().into(),
+                instances: self.objects.all().into(),
                 indices: self.indices.all().into(),
                 commands: commands.from(range.first as usize).into(),
                 count: None,
@@ -257,14 +258,14 @@ impl World {
     }
 
     pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
-        let objects = self.objects.all();
+        let view = view.gpu();
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
         if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            f.draw(draw::Overdraw { objects, view: view.gpu() }, draw, target);
+            f.draw(draw::Overdraw { view }, draw, target);
         } else if target.item.is_some() {
-            f.draw(draw::ObjectsAndItems { objects, view: view.gpu() }, draw, target);
+            f.draw(draw::ObjectsAndItems { view }, draw, target);
         } else {
-            f.draw(draw::Objects { objects, view: view.gpu() }, draw, target);
+            f.draw(draw::Objects { view }, draw, target);
         }
     }
 
@@ -276,11 +277,11 @@ impl World {
         view: &View,
         target: &Target,
     ) {
-        let (objects, view) = (self.objects.all(), view.gpu());
+        let view = view.gpu();
         if target.item.is_some() {
-            f.draw(draw::ObjectsItemsAndFlags { objects, visible, view }, draw, target);
+            f.draw(draw::ObjectsItemsAndFlags { visible, view }, draw, target);
         } else {
-            f.draw(draw::ObjectsAndFlags { objects, visible, view }, draw, target);
+            f.draw(draw::ObjectsAndFlags { visible, view }, draw, target);
         }
     }
 
@@ -340,3 +341,14 @@ impl World {
         Ok(self.all_commands.read()?)
     }
 }
+
+// Objects are bound as what goes on once an instance.
+const _: () = {
+    use std::mem::offset_of;
+    assert!(size_of::<Object>() == size_of::<draw::ObjectsInstance>());
+    assert!(offset_of!(Object, column_y) == offset_of!(draw::ObjectsInstance, column_y));
+    assert!(offset_of!(Object, column_z) == offset_of!(draw::ObjectsInstance, column_z));
+    assert!(offset_of!(Object, origin_high) == offset_of!(draw::ObjectsInstance, origin_high));
+    assert!(offset_of!(Object, origin_low) == offset_of!(draw::ObjectsInstance, origin_low));
+    assert!(offset_of!(Object, colour) == offset_of!(draw::ObjectsInstance, colour));
+};

@@ -2,12 +2,11 @@
 // PASS_ITEM tells the fragment shader whose it is.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
-#include "transform.glsl"
+#include "instance.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 normal_snorm16;    // octahedral
 
-layout(set = 0, binding = 0, scalar) readonly buffer Objects { Object items[]; } objects;
 layout(push_constant, scalar) uniform Push { View view; } push;
 
 layout(location = 0) out vec4 shade;
@@ -26,7 +25,7 @@ vec3 normal_from_octahedron(vec2 folded) {
 }
 
 void main() {
-    Object object = objects.items[gl_InstanceIndex];
+    Object object = drawn_object();
     gl_Position = clip_from_object(object, position, push.view.clip_from_relative, push.view.camera_high, push.view.camera_low);
     gl_PointSize = 1.0;
     // Normals turn by the cofactor matrix, which is right for mirrored and flattened transforms too.

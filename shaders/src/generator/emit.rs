@@ -78,7 +78,10 @@ fn emit_stage(stage: &StageModel) -> String {
         out += &emit_constants(stage);
     }
     if !stage.vertex.is_empty() {
-        out += &emit_vertex(stage);
+        out += &emit_attributes(stage, "vertex", "Vertex", &stage.vertex, stage.vertex_stride);
+    }
+    if !stage.instance.is_empty() {
+        out += &emit_attributes(stage, "instance", "Instance", &stage.instance, stage.instance_stride);
     }
     out
 }
@@ -162,7 +165,8 @@ fn emit_info(stage: &StageModel) -> String {
     };
     format!(
         "const INFO: &'static StageInfo = &StageInfo {{ name: {:?}, modules: &[{}], bindings: &[{}], push_size: {}, \
-         constants: &[{}], local_size: {:?}, vertex: &[{}], vertex_stride: {}, outputs: &{:?} }};\n",
+         constants: &[{}], local_size: {:?}, vertex: &[{}], vertex_stride: {}, \
+         instance: &[{}], instance_stride: {}, outputs: &{:?} }};\n",
         stage.name,
         stage.modules.iter().map(module).collect::<String>(),
         stage.bindings.iter().map(binding).collect::<String>(),
@@ -171,6 +175,8 @@ fn emit_info(stage: &StageModel) -> String {
         stage.local_size,
         stage.vertex.iter().map(vertex).collect::<String>(),
         stage.vertex_stride,
+        stage.instance.iter().map(vertex).collect::<String>(),
+        stage.instance_stride,
         stage.outputs,
     )
 }
@@ -191,7 +197,7 @@ fn emit_push(stage: &StageModel, push: &Struct) -> String {
     })
 }
 
-fn emit_vertex(stage: &StageModel) -> String {
+fn emit_attributes(stage: &StageModel, one: &str, suffix: &str, attributes: &[Attribute], stride: u32) -> String {
     let field = |attribute: &Attribute| {
         let ty = match attribute.format {
             VertexFormat::Float2 => "[f32; 2]",
@@ -200,8 +206,10 @@ fn emit_vertex(stage: &StageModel) -> String {
             VertexFormat::Snorm16x2 => "[i16; 2]",
             VertexFormat::Uint => "u32",
         };
+        let declared =
+            if suffix == "Instance" { format!("instance_{}", attribute.name) } else { attribute.name.clone() };
         PodField {
-            doc: stage.docs.of(&attribute.name, &attribute.name),
+            doc: stage.docs.of(&declared, &declared),
             name: attribute.name.clone(),
             ty: ty.to_owned(),
             offset: attribute.offset,
@@ -209,10 +217,10 @@ fn emit_vertex(stage: &StageModel) -> String {
     };
     emit_struct(&PodStruct {
         public: true,
-        doc: vec![format!("One vertex of [`{}`].", stage.type_name)],
-        name: format!("{}Vertex", stage.type_name),
-        fields: stage.vertex.iter().map(field).collect(),
-        size: stage.vertex_stride,
+        doc: vec![format!("One {one} of [`{}`].", stage.type_name)],
+        name: format!("{}{suffix}", stage.type_name),
+        fields: attributes.iter().map(field).collect(),
+        size: stride,
     })
 }
 

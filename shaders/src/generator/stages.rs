@@ -69,6 +69,10 @@ pub struct StageModel {
     pub vertex: Vec<Attribute>,
     /// Bytes of a vertex.
     pub vertex_stride: u32,
+    /// Attributes that go on once an instance, by location.
+    pub instance: Vec<Attribute>,
+    /// Bytes of an instance.
+    pub instance_stride: u32,
     /// Locations written.
     pub outputs: Vec<u32>,
 }
@@ -100,11 +104,11 @@ pub fn merge(shaders: &[Shader]) -> Result<StageModel, String> {
 
 fn single(shader: &Shader) -> Result<StageModel, String> {
     let reflection = &shader.reflection;
-    let is_vertex = shader.source.kind == ShaderKind::Vertex;
-    let (vertex, vertex_stride) = match is_vertex {
-        true => attributes(&reflection.inputs)?,
-        false => (Vec::new(), 0),
-    };
+    let inputs = if shader.source.kind == ShaderKind::Vertex { &reflection.inputs[..] } else { &[] };
+    let (of_instance, of_vertex): (Vec<_>, Vec<_>) =
+        inputs.iter().cloned().partition(|input| input.name.starts_with(INSTANCE));
+    let (vertex, vertex_stride) = attributes(&of_vertex)?;
+    let (instance, instance_stride) = attributes(&of_instance)?;
     Ok(StageModel {
         family: shader.source.family.clone(),
         name: shader.source.stage(),
@@ -118,6 +122,8 @@ fn single(shader: &Shader) -> Result<StageModel, String> {
         local_size: reflection.local_size,
         vertex,
         vertex_stride,
+        instance,
+        instance_stride,
         outputs: Vec::new(),
     })
 }
@@ -185,6 +191,9 @@ fn join_binding(bindings: &mut Vec<Binding>, new: &Binding) -> Result<(), String
     Ok(())
 }
 
+/// What an input that goes on once an instance is named with.
+const INSTANCE: &str = "instance_";
+
 /// Vertex inputs, laid out tightly in the order of their locations.
 fn attributes(inputs: &[Interface]) -> Result<(Vec<Attribute>, u32), String> {
     let mut offset = 0;
@@ -201,7 +210,8 @@ fn attributes(inputs: &[Interface]) -> Result<(Vec<Attribute>, u32), String> {
                 return Err(format!("vertex input `{name}`: takes vec2, vec3, vec4, uint or a vec2 named …_snorm16"));
             }
         };
-        attributes.push(Attribute { name: input.name.clone(), location: input.location, format, offset });
+        let name = input.name.strip_prefix(INSTANCE).unwrap_or(&input.name).to_owned();
+        attributes.push(Attribute { name, location: input.location, format, offset });
         offset += size;
     }
     Ok((attributes, offset))
@@ -219,7 +229,7 @@ fn check_names(stage: &StageModel) -> Result<(), String> {
             return Err(format!("two of bindings, push constants and `constants` are named `{name}`: rename one"));
         }
     }
-    for attribute in &stage.vertex {
+    for attribute in stage.vertex.iter().chain(&stage.instance) {
         check_field_name(&attribute.name)?;
     }
     for constant in &stage.constants {

@@ -126,6 +126,7 @@ fn heavy_and_light(gpu: &Gpu) -> engine::FrameReport {
     let commands = Buffer::with_data(gpu, "test.commands", &[command], Placement::Storage).unwrap();
     let draw = IndexedIndirect {
         vertices: corners.all().into(),
+        instances: corners.all().into(),
         indices: corners.all().into(),
         commands: commands.all().into(),
         count: None,
