@@ -47,6 +47,14 @@ pub const METHODS: &[Entry] = &[
         make: hzb::make,
     },
     Entry {
+        id: "hzb-iterative",
+        title: "hierarchical-Z culling by depth ranges, near to far, as many as the frame needs",
+        source: "Sightline; Haar & Aaltonen 2015, EOVC thesis II.2 and its reference 23",
+        guarantee: Guarantee::Exact,
+        options: hzb::iterative::OPTIONS,
+        make: hzb::iterative::make,
+    },
+    Entry {
         id: "hom",
         title: "hierarchical occlusion mapping with this frame's depth",
         source: "Lee et al. 2018, figure 14c; Kim 2015, III.2",

@@ -66,7 +66,7 @@ pub struct Frame {
     report: FrameReport,
     queries: Option<Queries>,
     count_statistics: bool,
-    timer: TimerMode,
+    timer: Option<TimerMode>,
     first_submit: Option<Instant>,
     host_since: Instant,
 }
@@ -83,7 +83,7 @@ impl Frame {
             report: FrameReport::default(),
             queries: None,
             count_statistics: false,
-            timer: gpu.timer_mode(),
+            timer: Some(gpu.timer_mode()),
             first_submit: None,
             host_since: Instant::now(),
         }
@@ -95,7 +95,12 @@ impl Frame {
     }
 
     pub(crate) fn timer_mode(&mut self, mode: TimerMode) {
-        self.timer = mode;
+        self.timer = Some(mode);
+    }
+
+    /// Measures the frame alone: no timestamp, and no barrier for its sake, stands between stages. The report then has no stages.
+    pub fn without_stage_times(&mut self) {
+        self.timer = None;
     }
 
     /// Names the part of the frame that the following stages belong to ("early", "late"); "" for none.
@@ -257,7 +262,9 @@ impl Frame {
         self.host_since = Instant::now();
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
-        self.report.stages.extend(lower::stage_times(vulkan, queries.timestamps, ops)?);
+        if self.timer.is_some() {
+            self.report.stages.extend(lower::stage_times(vulkan, queries.timestamps, ops)?);
+        }
         if let Some(pool) = how.statistics {
             let counted = lower::statistics(vulkan, pool)?;
             let sum = self.report.statistics.get_or_insert_default();
@@ -273,10 +280,13 @@ impl Frame {
         let (first, since) = (self.report.stages.len(), Instant::now());
         self.submit_and_wait()?;
         let data = buffer.read()?;
+        self.host_since = Instant::now();
+        if self.timer.is_none() {
+            return Ok(data);
+        }
         let stages: f64 = self.report.stages[first..].iter().map(|stage| stage.ms).sum();
         let stall = (since.elapsed().as_secs_f64() * 1e3 - stages).max(0.0);
         self.report.stages.push(StageTime { label: self.recorder.label("frame/read_back"), ms: stall });
-        self.host_since = Instant::now();
         Ok(data)
     }
 

@@ -31,6 +31,7 @@ pub use frame::{Frame, FrameReport, Skip, StageTime, Statistics};
 pub use gpu::{Gpu, GpuOptions};
 pub use image::{Format, Image, Target};
 pub use instance::{adapters, device_lines};
+pub use lower::folded;
 pub use memory::{Buffer, Placement};
 pub use messages::Message;
 pub use recorder::{IndexedIndirect, Op, Primitives, Recorded, Recorder};

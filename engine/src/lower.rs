@@ -16,7 +16,8 @@ use vk::Handle;
 
 /// How a submission is run.
 pub(crate) struct How {
-    pub(crate) timer: TimerMode,
+    /// None: stages are not timed.
+    pub(crate) timer: Option<TimerMode>,
     pub(crate) statistics: Option<vk::QueryPool>,
     pub(crate) timestamps: vk::QueryPool,
     pub(crate) barrier_every_stage: bool,
@@ -93,12 +94,13 @@ fn assert_counts_do_not_lapse(ops: &[Recorded]) {
 
 impl Recording<'_> {
     fn stamp(&self, how: &How, index: u32) {
+        let Some(timer) = how.timer else { return };
         let device = &self.vulkan.device;
         // SAFETY: `index` is within the pool: `lower` checked it.
         unsafe {
             device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, how.timestamps, index)
         };
-        if how.timer == TimerMode::Split {
+        if timer == TimerMode::Split {
             full_barrier(device, self.commands);
         }
     }
@@ -339,7 +341,7 @@ fn range(bound: &Bound) -> (vk::Buffer, u64, u64) {
 const MOST_GROUPS: u32 = 65_535;
 
 /// A grid of at least `groups`, in two dimensions; shaders unfold it (`include/grid.glsl`).
-pub(crate) fn folded(groups: u32) -> [u32; 2] {
+pub fn folded(groups: u32) -> [u32; 2] {
     let rows = groups.div_ceil(MOST_GROUPS);
     [groups.div_ceil(rows.max(1)), rows]
 }

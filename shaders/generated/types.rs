@@ -80,6 +80,28 @@ pub const PLACE_RANGE_SHIFT: u32 = 2;
 /// `PLACE_SELECTION_MASK` in GLSL.
 pub const PLACE_SELECTION_MASK: u32 = 3;
 
+/// At most so many depth ranges; there is one step more.
+pub const MOST_STEP_RANGES: u32 = 5;
+
+/// At most so many kinds of primitive, each of which has a draw of its own.
+pub const MOST_KINDS: u32 = 3;
+
+/// A list of blocks, then: its first words are a grid of a work group a block, and their number; then a grid of an invocation a block.
+pub const LISTED_GRID: u32 = 4;
+
+/// `LISTED_HEADER` in GLSL.
+pub const LISTED_HEADER: u32 = 8;
+
+/// What becomes of an object in a step.
+/// not due, or not seen: nothing.
+pub const STEP_HIDDEN: u32 = 0;
+
+/// Drawn.
+pub const STEP_SHOWN: u32 = 1;
+
+/// Drawn if its box, rasterised, shows.
+pub const STEP_TESTED: u32 = 2;
+
 /// Objects whose raster footprint is wider than their geometry: lines and points cover a pixel around them.
 pub const OBJECT_WIDE_RASTER: u32 = 1;
 
@@ -122,6 +144,22 @@ pub const MARKED_LIST: u32 = 0;
 
 /// `FIRST_CULL_LIST` in GLSL.
 pub const FIRST_CULL_LIST: u32 = 1;
+
+/// Where the objects of a block lie along the view, metres. Out of view, or known to be hidden: it ends before it begins.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct BlockSpan {
+    /// `begin` in GLSL.
+    pub begin: f32,
+    /// `end` in GLSL.
+    pub end: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(BlockSpan, begin) == 0);
+    assert!(std::mem::offset_of!(BlockSpan, end) == 4);
+    assert!(size_of::<BlockSpan>() == 8);
+};
 
 /// World bounds of an object: a box rounded outward on the host by the error of transforming its vertices on the GPU.
 #[repr(C)]
@@ -359,6 +397,43 @@ pub struct Reprojection {
 const _: () = {
     assert!(std::mem::offset_of!(Reprojection, clip_from_last) == 0);
     assert!(size_of::<Reprojection>() == 64);
+};
+
+/// What a frame's steps look through: more than push constants hold.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct StepView {
+    /// `view` in GLSL.
+    pub view: CullView,
+    /// See ranges.glsl.
+    pub depth_plane: [f32; 4],
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+    /// `block_count` in GLSL.
+    pub block_count: u32,
+    /// Of the pyramid.
+    pub coarsest_level: u32,
+    /// 1 to MOST_STEP_RANGES.
+    pub range_count: u32,
+    /// Where a range ends, as a share of where the next one does.
+    pub share: f32,
+    /// The first object of the second kind of primitive, and of the third; beyond all objects if there is none.
+    pub second_kind: u32,
+    /// `third_kind` in GLSL.
+    pub third_kind: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(StepView, view) == 0);
+    assert!(std::mem::offset_of!(StepView, depth_plane) == 104);
+    assert!(std::mem::offset_of!(StepView, object_count) == 120);
+    assert!(std::mem::offset_of!(StepView, block_count) == 124);
+    assert!(std::mem::offset_of!(StepView, coarsest_level) == 128);
+    assert!(std::mem::offset_of!(StepView, range_count) == 132);
+    assert!(std::mem::offset_of!(StepView, share) == 136);
+    assert!(std::mem::offset_of!(StepView, second_kind) == 140);
+    assert!(std::mem::offset_of!(StepView, third_kind) == 144);
+    assert!(size_of::<StepView>() == 148);
 };
 
 /// Where a texel of the last frame goes. A texel is a pixel, or the farthest of a block of pixels.

@@ -85,7 +85,7 @@ fn the_picture_from_above_shows_boxes_and_leaves_the_rest_grey() {
     let mut contender = Contender::new(&session, entry, entry.default_options(), &None).unwrap();
     contender.timed(&mut session, 0).unwrap();
     let view = session.look(1).unwrap();
-    contender.run(&session, &view, true).unwrap();
+    contender.run(&session, &view, sightline::run::Watched::Items).unwrap();
     let boxes = contender.method.tested_boxes(&session.world).unwrap().unwrap();
     let coloured = |boxes: &culling::TestedBoxes| {
         let picture = boxes_view::from_above(&session, &view, boxes).unwrap();

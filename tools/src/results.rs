@@ -227,8 +227,22 @@ pub struct Frames {
     pub boxes: Vec<u64>,
     /// Nodes that rays looked at.
     pub node_visits: Vec<u64>,
+    /// Frame times of the frames whose stages were timed, timers included: what [`Frames::stages`] are parts of.
+    #[serde(default)]
+    pub staged_frame_ms: Vec<f64>,
     /// By stage, under the names of [`Method::stages`], its milliseconds in each frame; `null`: it did not run there.
     pub stages: BTreeMap<String, Vec<Option<f64>>>,
+}
+
+impl Frames {
+    /// Frame times that the stages' add up to. Results from before stages had frames of their own have one set for both.
+    pub fn staged_ms(&self) -> &[f64] {
+        if self.staged_frame_ms.is_empty() {
+            &self.frame_ms
+        } else {
+            &self.staged_frame_ms
+        }
+    }
 }
 
 /// Why results could not be written or read. One line that names the file, and the field where there is one.

@@ -21,6 +21,17 @@ pub struct Contender {
     depth: DepthFormat,
 }
 
+/// What is measured of a frame beside its time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watched {
+    /// Nothing: the frame is as fast as it can be.
+    Nothing,
+    /// The time of each stage.
+    Stages,
+    /// Who owns each pixel: the item buffer is on.
+    Items,
+}
+
 /// What is measured of one frame, untimed.
 pub struct Measured {
     /// Against the truth.
@@ -71,17 +82,23 @@ impl Contender {
         }
     }
 
-    /// Runs one frame as it is timed: without the item buffer.
+    /// Runs one frame as it is timed: without the item buffer, and without timers between its stages.
     pub fn timed(&mut self, session: &mut Session, frame: usize) -> Result<FrameReport> {
         let view = session.look(frame)?;
-        self.run(session, &view, false)
+        self.run(session, &view, Watched::Nothing)
+    }
+
+    /// Runs one frame whose stages are timed: as it is timed otherwise, but slower by the timers.
+    pub fn staged(&mut self, session: &mut Session, frame: usize) -> Result<FrameReport> {
+        let view = session.look(frame)?;
+        self.run(session, &view, Watched::Stages)
     }
 
     /// Runs one frame with the item buffer on and compares it with the truth.
     pub fn measured(&mut self, session: &mut Session, frame: usize, truth: &Truth) -> Result<Measured> {
         let view = session.look(frame)?;
         self.method.count_work(true);
-        let report = self.run(session, &view, true)?;
+        let report = self.run(session, &view, Watched::Items)?;
         self.method.count_work(false);
         let work = self.method.work()?;
         let images = session.targets.read()?;
@@ -95,17 +112,20 @@ impl Contender {
         Ok(Measured { error, drawn, overdraw, counts, work, images })
     }
 
-    /// Runs one frame through a view, with or without the item buffer.
-    pub fn run(&mut self, session: &Session, view: &View, items: bool) -> Result<FrameReport> {
+    /// Runs one frame through a view.
+    pub fn run(&mut self, session: &Session, view: &View, watched: Watched) -> Result<FrameReport> {
         let view = &view.without_details(self.options.number(DETAIL_OPTION.name) as f32);
         self.method.prepare(&session.world, view)?;
-        let target = if items || self.method.needs_items(&session.world, view) {
+        let target = if watched == Watched::Items || self.method.needs_items(&session.world, view) {
             session.targets.with_items()
         } else {
             session.targets.timed()
         };
         let before = session.gpu.memory_mib();
         let mut f = session.gpu.frame();
+        if watched == Watched::Nothing {
+            f.without_stage_times();
+        }
         self.method.frame(&mut f, &session.world, view, &target)?;
         // Some methods make resources when they first see the target's size.
         self.memory_mib += session.gpu.memory_mib() - before;

@@ -61,7 +61,7 @@ struct FrameEvents {
 
 /// A frame that was not timed has no events. `begin` is in nanoseconds: whole numbers, so that events never overlap by rounding.
 fn frame_events(method: &Method, frame: usize, track: u32, begin: u64) -> FrameEvents {
-    let Some(&frame_ms) = method.frames.frame_ms.get(frame) else {
+    let Some(&frame_ms) = method.frames.staged_ms().get(frame) else {
         return FrameEvents { events: Vec::new(), end: begin };
     };
     let mut events = Vec::new();

@@ -2,7 +2,7 @@
 
 use crate::metrics::{DepthErrors, NOTICED};
 use crate::png_out::{DepthScale, Picture};
-use crate::run::Contender;
+use crate::run::{Contender, Watched};
 use crate::session::Session;
 use crate::stats;
 use anyhow::{bail, Context, Result};
@@ -41,7 +41,7 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
         bail!("--frame 0: a warp starts from the frame before; give --frame 1 or more");
     };
     let last_view = session.look(before)?;
-    contender.run(session, &last_view, true)?;
+    contender.run(session, &last_view, Watched::Items)?;
     let settings = Settings { stored: true, ..settings }; // for the picture of it
     let mut warp = Warp::new(&session.gpu, &session.world, last_view.size, settings).context("depth warping")?;
     let mut f = session.gpu.frame();
@@ -59,7 +59,7 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
     let motions = warp.read_motions()?;
     // Holes, which are farther than far, are shown as far.
     let depth = warped.read()?.into_iter().map(|depth| depth.max(DEPTH_FAR)).collect();
-    contender.run(session, &view, true)?;
+    contender.run(session, &view, Watched::Items)?;
     let images = session.targets.read()?;
     let scale = DepthScale::of(&images.depth);
     Ok(Warped {

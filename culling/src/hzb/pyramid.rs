@@ -55,27 +55,57 @@ impl Pyramid {
 
     /// Reduces the target's depth, three levels a dispatch.
     pub fn reduce(&self, f: &mut Frame, target: &Target) {
-        let tiles_at = |level: u32| {
-            let PyramidLevel { width, height, .. } = self.layout[level as usize];
-            [width, height]
+        let tiles = self.tiles_at(REDUCED_LEVELS);
+        f.dispatch(self.first(target), tiles[0] * tiles[1]);
+        for source_level in self.source_levels() {
+            let tiles = self.tiles_at(source_level + REDUCED_LEVELS);
+            f.dispatch(self.next(source_level), tiles[0] * tiles[1]);
+        }
+    }
+
+    /// The same over grids on the GPU, three words a reduction: as [`Pyramid::grids`] has them, or without work groups.
+    pub fn reduce_if(&self, f: &mut Frame, target: &Target, grids: BufferRef<u32>) {
+        f.dispatch_indirect(self.first(target), grids);
+        for (reduction, source_level) in self.source_levels().enumerate() {
+            f.dispatch_indirect(self.next(source_level), grids.from(3 * (reduction + 1)));
+        }
+    }
+
+    /// The grid of each reduction, three words each.
+    pub fn grids(&self) -> Vec<u32> {
+        let levels = [0].into_iter().chain(self.source_levels());
+        let grid = |source_level: u32| {
+            let [width, height] = self.tiles_at(source_level + REDUCED_LEVELS);
+            let [x, y] = engine::folded((width * height).div_ceil(hzb::ReduceDepth::INFO.local_size[0]));
+            [x, y, 1]
         };
-        let tiles = tiles_at(REDUCED_LEVELS);
-        let first = hzb::ReduceDepth {
+        levels.flat_map(grid).collect()
+    }
+
+    /// From which levels coarser ones are made, after the depth buffer itself.
+    fn source_levels(&self) -> impl Iterator<Item = u32> {
+        (REDUCED_LEVELS..self.coarsest).step_by(REDUCED_LEVELS as usize)
+    }
+
+    fn tiles_at(&self, level: u32) -> [u32; 2] {
+        let PyramidLevel { width, height, .. } = self.layout[level as usize];
+        [width, height]
+    }
+
+    fn first(&self, target: &Target) -> hzb::ReduceDepth {
+        hzb::ReduceDepth {
             depth: target.depth,
             levels: self.levels.all(),
             pyramid: self.texels.all(),
             size_px: self.size,
-            tiles,
+            tiles: self.tiles_at(REDUCED_LEVELS),
             constants: hzb::ReduceDepthConstants { standard_depth: self.standard_depth },
-        };
-        f.dispatch(first, tiles[0] * tiles[1]);
-        let mut source_level = REDUCED_LEVELS;
-        while source_level < self.coarsest {
-            let tiles = tiles_at(source_level + REDUCED_LEVELS);
-            let next = hzb::ReduceLevels { levels: self.levels.all(), pyramid: self.texels.all(), source_level, tiles };
-            f.dispatch(next, tiles[0] * tiles[1]);
-            source_level += REDUCED_LEVELS;
         }
+    }
+
+    fn next(&self, source_level: u32) -> hzb::ReduceLevels {
+        let tiles = self.tiles_at(source_level + REDUCED_LEVELS);
+        hzb::ReduceLevels { levels: self.levels.all(), pyramid: self.texels.all(), source_level, tiles }
     }
 
     /// Notes that the pyramid is not needed.

@@ -38,6 +38,11 @@ impl Blocks {
         })
     }
 
+    /// Bounds by block.
+    pub(super) fn bounds(&self) -> &Buffer<Bounds> {
+        &self.bounds
+    }
+
     pub(super) fn in_view(&self, f: &mut Frame, view: &View) -> BufferRef<u32> {
         let (blocks, block_count) = (self.list.all(), self.bounds.len() as u32);
         match self.useless {

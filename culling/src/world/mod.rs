@@ -198,6 +198,17 @@ impl World {
         self.blocks.in_view(f, view)
     }
 
+    /// Bounds of blocks of [`BLOCK_OBJECTS`](shaders::types::BLOCK_OBJECTS) objects that lie side by side. A block in which something
+    /// moves is flagged to be kept always.
+    pub fn block_bounds(&self) -> BufferRef<Bounds> {
+        self.blocks.bounds().all()
+    }
+
+    /// Blocks.
+    pub fn block_count(&self) -> u32 {
+        self.blocks.bounds().len() as u32
+    }
+
     /// Notes that blocks need not be tested.
     pub fn skip_blocks(f: &mut Frame, reason: &'static str) {
         f.skip(frustum::TestBlocks::INFO.name, reason);

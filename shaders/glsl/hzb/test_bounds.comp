@@ -21,35 +21,12 @@ layout(set = 0, binding = 5, scalar) readonly buffer Blocks { uint words[]; } bl
 layout(push_constant, scalar) uniform Push { CullView view; uint object_count; uint coarsest_level; } push;
 #include "blocks.glsl"
 
-// True if every texel that the footprint touches is nearer than the box can be.
-bool hidden_by_pyramid(Footprint footprint) {
-    uint level = 1u;
-    while (level < push.coarsest_level
-        && any(greaterThanEqual((footprint.last >> level) - (footprint.first >> level), uvec2(FOOTPRINT_TEXELS)))) level++;
-    PyramidLevel texels = levels.items[level];
-    uvec2 first = footprint.first >> level;
-    uvec2 last = footprint.last >> level;
-    for (uint y = first.y; y <= last.y; y++) {
-        for (uint x = first.x; x <= last.x; x++) {
-            if (footprint.nearest >= pyramid.items[texels.first + y * texels.width + x]) return false;
-        }
-    }
-    return true;
-}
-
-bool is_visible(Bounds bound) {
-    if ((bound.flags & OBJECT_ALWAYS_KEPT) != 0u) return true;
-    ClipBox box = clip_from_bounds(bound, push.view);
-    if (left_out(box, bound.flags, push.view)) return false;
-    Footprint footprint = footprint_of(box, push.view, bound.flags);
-    if (footprint.crosses_near) return true;
-    return !footprint.empty && !hidden_by_pyramid(footprint);
-}
+#include "hidden.glsl"
 
 void main() {
     uint object = object_in_view();
     if (object >= push.object_count) return;
-    bool visible = is_visible(bounds.items[object]);
+    bool visible = is_visible(bounds.items[object], push.view, push.coarsest_level);
     newly.items[object] = visible && seen_before.items[object] == 0u ? 1u : 0u;
     seen.items[object] = visible ? 1u : 0u;
 }

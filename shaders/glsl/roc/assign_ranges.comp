@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
 #include "select.glsl"
+#include "ranges.glsl"
 
 layout(local_size_x = 64) in;
 // What begins past the last range is drawn without a test (the thesis); otherwise it belongs to the last range.
@@ -26,16 +27,6 @@ layout(push_constant, scalar) uniform Push {
     float share;
 } push;
 
-uint range_of(float depth, float outermost) {
-    uint range = push.range_count - 1u;
-    float end = outermost * push.share;
-    while (range > 0u && depth <= end) {
-        range--;
-        end *= push.share;
-    }
-    return range;
-}
-
 void main() {
     uint chunk = invocation_index();
     uint first = chunk * PACK_CHUNK;
@@ -51,7 +42,7 @@ void main() {
             float depth = depths.items[object];
             bool is_seen = selects == SELECT_SEEN;
             if (SHOW_BEYOND && depth > outermost && !is_seen) selects = SELECT_SHOWN;
-            uint range = range_of(depth, outermost);
+            uint range = range_of(depth, outermost, push.range_count, push.share);
             place = range << PLACE_RANGE_SHIFT | selects;
             list_counts[(is_seen ? 0u : push.range_count) + range]++;
         }

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
 #include "select.glsl"
+#include "ranges.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
@@ -20,23 +21,13 @@ layout(set = 0, binding = 4, scalar) buffer Farthest { uint items[]; } farthest;
 // near plane), in metres.
 layout(push_constant, scalar) uniform Push { CullView view; vec4 depth_plane; uint object_count; } push;
 
-// Where the box begins. Bounds so large that this is no number begin at the eye.
-float depth_of(Bounds bound) {
-    vec4 plane = push.depth_plane;
-    vec3 centre = relative_from_split(bound.centre_high, bound.centre_low, push.view.camera_high, push.view.camera_low);
-    precise float middle = plane.x * centre.x + plane.y * centre.y + plane.z * centre.z + plane.w;
-    precise float reach =
-        abs(plane.x) * bound.half_extent.x + abs(plane.y) * bound.half_extent.y + abs(plane.z) * bound.half_extent.z;
-    precise float begin = middle - reach;
-    return begin > 0.0 ? begin : 0.0;
-}
-
 void main() {
     uint object = invocation_index();
     if (object >= push.object_count) return;
     Bounds bound = bounds.items[object];
     uint selects = selection(bound, seen.items[object] != 0u, push.view);
-    float depth = (bound.flags & OBJECT_ALWAYS_KEPT) != 0u ? 0.0 : depth_of(bound);
+    float depth = (bound.flags & OBJECT_ALWAYS_KEPT) != 0u ? 0.0
+        : begin_of_box(bound, push.depth_plane, push.view.camera_high, push.view.camera_low);
     selected.items[object] = selects;
     depths.items[object] = depth;
     bool in_view = selects == SELECT_SEEN

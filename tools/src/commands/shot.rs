@@ -4,7 +4,7 @@ use super::say;
 use crate::boxes_view;
 use crate::cli::{parse_methods, ShotArgs, Show};
 use crate::png_out::{DepthScale, Picture};
-use crate::run::{fragment_counts, Contender};
+use crate::run::{fragment_counts, Contender, Watched};
 use crate::session::{cache_folder, Session};
 use crate::truth::RunTruth;
 use crate::warp_view::{self, Warped};
@@ -53,7 +53,7 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
 /// The picture, and what to say of it behind the file's name.
 fn picture(session: &mut Session, contender: &mut Contender, arguments: &ShotArgs) -> Result<(Picture, String)> {
     let view = session.look(arguments.frame)?;
-    let report = contender.run(session, &view, true)?;
+    let report = contender.run(session, &view, Watched::Items)?;
     let images = session.targets.read()?;
     let picture = match arguments.view {
         Show::Colour => Picture::colour(&images),

@@ -75,7 +75,7 @@ fn family(stage: &str) -> &str {
 
 /// Over all frames: where a stage did not run it took no time.
 fn mean_ms(method: &Method, stage: &str) -> f64 {
-    let frames = method.frames.frame_ms.len().max(1) as f64;
+    let frames = method.frames.staged_ms().len().max(1) as f64;
     method.frames.stages.get(stage).into_iter().flatten().flatten().sum::<f64>() / frames
 }
 
@@ -84,7 +84,7 @@ fn row(method: &Method, families: &[&str], shares: bool) -> RowData {
         method.stages.iter().map(|stage| (stage.name.as_str(), mean_ms(method, &stage.name))).collect();
     let summed: f64 = times.iter().map(|(_, ms)| ms).sum();
     // Two timestamps may round to more than the time around them: then nothing is left over.
-    let frame = stats::mean(&method.frames.frame_ms).unwrap_or(0.0).max(summed);
+    let frame = stats::mean(method.frames.staged_ms()).unwrap_or(0.0).max(summed);
     let unit = if shares && frame > 0.0 { 100.0 / frame } else { 1.0 };
     let part = |name: &str, ms: f64, class: String| {
         let share = if frame > 0.0 { 100.0 * ms / frame } else { 0.0 };

@@ -14,7 +14,7 @@ const BETWEEN: &str = "between stages";
 /// stage's part is what its name has behind the colon. Empty if the method has no parts.
 pub fn parts_table(method: &Method) -> String {
     let parts = parts(method);
-    let frame_ms = stats::mean(&method.frames.frame_ms).unwrap_or(0.0);
+    let frame_ms = stats::mean(method.frames.staged_ms()).unwrap_or(0.0);
     if parts.iter().all(|(name, _)| *name == NO_PART) || frame_ms <= 0.0 {
         return String::new();
     }
@@ -29,7 +29,7 @@ pub fn parts_table(method: &Method) -> String {
 
 /// Name and mean milliseconds of each part, over all frames: a stage that did not run in one took no time there.
 fn parts(method: &Method) -> Vec<(&str, f64)> {
-    let frames = method.frames.frame_ms.len().max(1) as f64;
+    let frames = method.frames.staged_ms().len().max(1) as f64;
     let mut parts: Vec<(&str, f64)> = Vec::new();
     for stage in &method.stages {
         let name = stage.name.split_once(':').map_or(NO_PART, |(_, part)| part);

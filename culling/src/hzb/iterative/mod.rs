@@ -1,0 +1,196 @@
+//! `hzb-iterative`: hierarchical-Z culling by depth ranges, near to far, with as many ranges as the frame needs. `hzb` (Haar & Aaltonen
+//! 2015) lives on what the last frame saw; this method tests that too once something is in front of it, and lets what has just come into
+//! view hide what lies farther away in the same frame, as iterative raster occlusion culling does (EOVC thesis II.2, its reference 23).
+//!
+//! The view is cut into r depth ranges. In step k what the last frame saw of range k is tested together with what it did not see of range
+//! k - 1, against the farthest-depth pyramid of all that was drawn in the steps before: what was seen runs one range ahead, so that r
+//! ranges take r pyramids. With one range this is `hzb` with tested blocks.
+//!
+//! - r follows from how far the view has changed since the last frame (see [`hurry`]): known before the frame, so nothing is read back.
+//! - Blocks of objects are tested before their objects, and a block once hidden is hidden for the rest of the frame.
+//! - An object counts as seen if one of its fragments passed the early tests: drawn near to far, few hidden ones do.
+
+pub mod hurry;
+mod steps;
+pub mod twin;
+
+use super::Pyramid;
+use crate::roc::depth_plane;
+use crate::world::Still;
+use crate::{Method, OptionInfo, Result, Setup, View, World};
+use engine::{Buffer, Frame, Gpu, Placement, Target};
+use hurry::Hurry;
+use shaders::types::MOST_STEP_RANGES;
+use shaders::{hzb, Stage};
+use steps::{Step, Steps};
+
+/// How many ranges, how they are cut, and how finely boxes are tested.
+pub const OPTIONS: &[OptionInfo] = &[
+    crate::world::SKIP_OPTION,
+    crate::world::DETAIL_OPTION,
+    OptionInfo {
+        name: "ranges",
+        default: "auto",
+        values: "auto|1|2|3|4|5",
+        help: "depth ranges: as many as the change of view asks for, or always so many; 1 draws in two phases, as hzb",
+    },
+    OptionInfo {
+        name: "factor",
+        default: "2",
+        values: "2..=16",
+        help: "how many times farther than the range before it each range reaches",
+    },
+    OptionInfo {
+        name: "boxes",
+        default: "true",
+        values: "true|false",
+        help: "what the last frame did not see must show by its rasterised box too, not by the pyramid alone",
+    },
+    OptionInfo {
+        name: "small",
+        default: "16",
+        values: "0..=1000000",
+        help: "objects of no more triangles are drawn without a test of their box",
+    },
+    OptionInfo {
+        name: "every",
+        default: "4",
+        values: "1..=64",
+        help: "of frames with one range: how many from one that finds out what is still seen to the next; what comes into view is added",
+    },
+    OptionInfo {
+        name: "texels",
+        default: "4",
+        values: "2..=16",
+        help: "pyramid texels a footprint may touch in each direction: more is tighter and slower",
+    },
+];
+
+/// Frames of an unchanged view after which the lists hold: what is hidden leaves the list of what was seen one frame after it is drawn,
+/// and what it had let through may leave in the next two.
+const SETTLED_AFTER: u32 = 4;
+
+/// Parts of the frame by step.
+const PARTS: [&str; MOST_STEP_RANGES as usize + 1] = ["step 0", "step 1", "step 2", "step 3", "step 4", "step 5"];
+
+struct Iterative {
+    gpu: Gpu,
+    visible: [Buffer<u32>; 2],
+    steps: Steps,
+    pyramid: Option<Pyramid>,
+    hurry: Hurry,
+    every: u32,
+    /// Frames until what was seen is looked at again.
+    until_flags: u32,
+    /// Ranges of the last frame that ran.
+    ranges: u32,
+    /// The first step of that frame.
+    first_step: u32,
+    /// Nothing was seen before this frame.
+    afresh: bool,
+    now: usize,
+    still: Still,
+}
+
+/// Makes the method.
+pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
+    let (gpu, world, options) = (setup.gpu, setup.world, setup.options);
+    let flags = |name: &str| Buffer::new(gpu, name, world.len(), Placement::Storage);
+    Ok(Box::new(Iterative {
+        gpu: gpu.clone(),
+        visible: [flags("hzb.visible_even")?, flags("hzb.visible_odd")?],
+        steps: Steps::new(gpu, world, options)?,
+        pyramid: None,
+        hurry: Hurry::new(options.text("ranges").parse().ok(), world),
+        every: options.number("every"),
+        until_flags: 0,
+        ranges: 1,
+        first_step: 0,
+        afresh: true,
+        now: 0,
+        still: Still::new(options).settled_after(SETTLED_AFTER),
+    }))
+}
+
+impl Method for Iterative {
+    fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        world.update(f);
+        f.clear(target);
+        let unchanged = self.still.same(world, view);
+        if self.still.holds(world, view) {
+            return self.same_again(f, world, view, target);
+        }
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size)?;
+        self.ranges = self.hurry.ranges(view);
+        self.first_step = if self.afresh { 1 } else { 0 };
+        // While nothing changes always: then how long that lasts does not show in what follows.
+        let flags = self.ranges > 1 || self.until_flags == 0 || self.afresh || unchanged;
+        self.until_flags = if flags { self.every - 1 } else { self.until_flags - 1 };
+        self.now = 1 - self.now;
+        let (before, now) = (&self.visible[1 - self.now], &self.visible[self.now]);
+        self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
+
+        if flags {
+            f.fill("hzb/clear_visible", now, 0);
+        } else {
+            f.copy("hzb/keep_visible", before.all(), now.all());
+        }
+        self.steps.measure(f, world); // 1. where each block of objects lies along the view
+        for number in self.first_step..=self.ranges {
+            f.part(PARTS[number as usize]);
+            let behind = number > self.first_step;
+            if behind {
+                match number - self.first_step {
+                    1 => pyramid.reduce(f, target), // 2. farthest depth of all drawn so far
+                    _ => pyramid.reduce_if(f, target, self.steps.reductions()), // if the last step drew anything
+                }
+            }
+            let step = Step { number, behind, seen: before.all() };
+            self.steps.find(f, world, pyramid, &step); // 3. what is due and not hidden: seen of this range, unseen of the one before
+            self.steps.test_boxes(f, world, &step, target); // 4. of what was not seen, only what shows by its box
+            for draw in self.steps.draws(world, number) {
+                // 5. draw it, and go on to the next range
+                match flags || number > 0 {
+                    true => world.draw_indirect_flagged(f, draw, now.all(), view, target),
+                    false => world.draw_indirect(f, draw, view, target),
+                }
+            }
+        }
+        f.part("");
+        self.afresh = false;
+        Ok(())
+    }
+
+    fn forget(&mut self) -> Result<()> {
+        self.still.forget();
+        self.hurry.forget();
+        self.afresh = true;
+        self.until_flags = 0;
+        self.visible.iter_mut().try_for_each(|flags| Ok(flags.write(&vec![0; flags.len()])?))
+    }
+}
+
+impl Iterative {
+    /// Camera and objects unchanged: the last frame's lists hold.
+    fn same_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
+        let stages = [
+            hzb::MeasureBlocks::INFO,
+            hzb::TestBlocks::INFO,
+            hzb::ListBlocks::INFO,
+            hzb::TestObjects::INFO,
+            hzb::ScanBlocks::INFO,
+            hzb::WriteBlocks::INFO,
+            hzb::TestBoxes::INFO,
+        ];
+        stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
+        Pyramid::skip(f, Still::REASON);
+        for number in self.first_step..=self.ranges {
+            f.part(PARTS[number as usize]);
+            for draw in self.steps.draws(world, number) {
+                world.draw_indirect(f, draw, view, target);
+            }
+        }
+        f.part("");
+        Ok(())
+    }
+}

@@ -1,0 +1,226 @@
+//! What a step looks at and draws: blocks due, objects found, their commands. Work follows what is due, not the number of objects.
+
+use crate::boxes::BoxShape;
+use crate::hzb::Pyramid;
+use crate::world::{View, World};
+use crate::{Options, Result};
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Target};
+use shaders::types::{BlockSpan, DrawCommand, StepView, LISTED_GRID, LISTED_HEADER, MOST_STEP_RANGES};
+use shaders::{hzb, BufferRef, ResourceId, Stage};
+
+/// Reductions of the largest picture: three levels each.
+const MOST_REDUCTIONS: usize = 6;
+
+/// A step of a frame.
+pub(super) struct Step {
+    pub number: u32,
+    /// Something was drawn before it.
+    pub behind: bool,
+    /// What the last frame saw, by object.
+    pub seen: BufferRef<u32>,
+}
+
+/// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
+pub(super) struct Steps {
+    view: Buffer<StepView>,
+    spans: Buffer<BlockSpan>,
+    farthest: Buffer<u32>,
+    due: Buffer<u32>,
+    blocks: Buffer<u32>,
+    shown: Buffer<u32>,
+    counts: Buffer<u32>,
+    starts: Buffer<u32>,
+    commands: Vec<Buffer<DrawCommand>>,
+    totals: Vec<Buffer<u32>>,
+    boxes: Buffer<DrawCommand>,
+    shape: BoxShape,
+    /// Grids of the pyramid's reductions, and the same where something was drawn.
+    reductions: [Buffer<u32>; 2],
+    small_indices: u32,
+    tests_boxes: bool,
+    share: f32,
+    texels: u32,
+    subgroup_size: u32,
+    kinds: u32,
+    world: ResourceId,
+}
+
+impl Steps {
+    pub fn new(gpu: &Gpu, world: &World, options: &Options) -> Result<Self> {
+        let (blocks, kinds) = (world.block_count() as usize, world.ranges().len());
+        let words = |what: &str, len: usize| Buffer::new(gpu, &format!("hzb.{what}"), len, Placement::Storage);
+        let most_steps = options.text("ranges").parse().unwrap_or(MOST_STEP_RANGES) + 1;
+        let no_boxes: Vec<_> = world.ranges().iter().map(|range| BoxShape::no_boxes(range.first)).collect();
+        let commands = |step| Buffer::new(gpu, &format!("hzb.commands{step}"), world.len(), Placement::Storage);
+        Ok(Steps {
+            view: Buffer::new(gpu, "hzb.step_view", 1, Placement::Upload)?,
+            spans: Buffer::new(gpu, "hzb.spans", blocks, Placement::Storage)?,
+            farthest: words("farthest", 1)?,
+            due: words("due", blocks)?,
+            blocks: words("due_blocks", LISTED_HEADER as usize + blocks)?,
+            shown: words("shown", world.len())?,
+            counts: words("counts", kinds * blocks)?,
+            starts: words("starts", kinds * blocks)?,
+            commands: (0..most_steps).map(commands).collect::<std::result::Result<_, _>>()?,
+            totals: (0..most_steps).map(|step| words(&format!("totals{step}"), kinds)).collect::<std::result::Result<_, _>>()?,
+            boxes: Buffer::with_data(gpu, "hzb.boxes", &no_boxes, Placement::Storage)?,
+            shape: BoxShape::new(gpu, "hzb.boxes", kinds as u32)?,
+            reductions: [words("full_grids", 3 * MOST_REDUCTIONS)?, words("grids", 3 * MOST_REDUCTIONS)?],
+            small_indices: 3 * options.number("small"),
+            tests_boxes: options.flag("boxes"),
+            share: 1.0 / options.number("factor").max(2) as f32,
+            texels: options.number("texels"),
+            subgroup_size: gpu.subgroup_size(),
+            kinds: kinds as u32,
+            world: world.id(),
+        })
+    }
+
+    /// Gives the stages the frame's view.
+    ///
+    /// # Panics
+    /// If the lists were made for another world: they would not have the room.
+    pub fn look(&mut self, world: &World, view: &View, depth_plane: [f32; 4], range_count: u32, pyramid: &Pyramid) -> Result<()> {
+        self.assert_made_for(world);
+        let first_of = |kind: usize| world.ranges().get(kind).map_or(u32::MAX, |range| range.first);
+        let all = StepView {
+            view: view.cull(),
+            depth_plane,
+            object_count: world.len() as u32,
+            block_count: world.block_count(),
+            coarsest_level: pyramid.coarsest_level(),
+            range_count,
+            share: self.share,
+            second_kind: first_of(1),
+            third_kind: first_of(2),
+        };
+        self.shape.look(view)?;
+        self.reductions[0].write(&pyramid.grids())?;
+        Ok(self.view.write(&[all])?)
+    }
+
+    /// Where blocks lie along the view.
+    pub fn measure(&self, f: &mut Frame, world: &World) {
+        f.fill("hzb/clear_farthest", &self.farthest, 0);
+        let measure = hzb::MeasureBlocks {
+            bounds: world.block_bounds(),
+            spans: self.spans.all(),
+            farthest: self.farthest.all(),
+            views: self.view.all(),
+        };
+        f.dispatch(measure, if world.is_empty() { 0 } else { world.block_count() });
+    }
+
+    /// Finds what is due in a step and not hidden, and writes its commands.
+    pub fn find(&self, f: &mut Frame, world: &World, pyramid: &Pyramid, step: &Step) {
+        if world.is_empty() {
+            return;
+        }
+        let (farthest, views, blocks) = (self.farthest.all(), self.view.all(), self.blocks.all());
+        let (levels, texels, block_count) = (pyramid.levels(), pyramid.texels(), world.block_count());
+        let (footprint_texels, behind, number) = (self.texels, step.behind, step.number);
+        let test = hzb::TestBlocks {
+            bounds: world.block_bounds(),
+            spans: self.spans.all(),
+            farthest,
+            views,
+            levels,
+            pyramid: texels,
+            due: self.due.all(),
+            step: number,
+            constants: hzb::TestBlocksConstants { footprint_texels, behind },
+        };
+        f.dispatch(test, block_count);
+        let subgroup_size = self.subgroup_size;
+        let (counts, kind_count) = (self.counts.all(), self.kinds);
+        let constants = hzb::ListBlocksConstants { subgroup_size };
+        f.dispatch_groups(hzb::ListBlocks { due: self.due.all(), blocks, counts, block_count, kind_count, constants }, 1);
+        let test = hzb::TestObjects {
+            bounds: world.bounds(),
+            seen: step.seen,
+            farthest,
+            views,
+            levels,
+            pyramid: texels,
+            blocks,
+            shown: self.shown.all(),
+            counts,
+            step: number,
+            constants: hzb::TestObjectsConstants { footprint_texels, behind, boxes: self.tests_boxes },
+        };
+        f.dispatch_indirect(test, blocks);
+        let (starts, totals) = (self.starts.all(), self.totals[number as usize].all());
+        let constants = hzb::ScanBlocksConstants { subgroup_size };
+        let [full_grids, grids] = [0, 1].map(|which: usize| self.reductions[which].all());
+        let (boxes, reductions) = (self.boxes.all(), pyramid.grids().len() as u32 / 3);
+        let scan = hzb::ScanBlocks {
+            blocks,
+            counts,
+            starts,
+            totals,
+            boxes,
+            full_grids,
+            grids,
+            block_count,
+            kind_count,
+            reductions,
+            constants,
+        };
+        f.dispatch_groups(scan, 1);
+        let write = hzb::WriteBlocks {
+            blocks,
+            shown: self.shown.all(),
+            counts,
+            starts,
+            views,
+            object_meshes: world.object_meshes(),
+            meshes: world.meshes(),
+            commands: self.commands[number as usize].all(),
+            small_indices: self.small_indices,
+        };
+        f.dispatch_indirect(write, blocks.from(LISTED_GRID as usize));
+    }
+
+    /// Rasterises the boxes of what a step found and the last frame did not see: whose show are drawn.
+    pub fn test_boxes(&self, f: &mut Frame, world: &World, step: &Step, target: &Target) {
+        if !self.tests_boxes || !step.behind {
+            f.skip(hzb::TestBoxes::INFO.name, if self.tests_boxes { "nothing drawn before" } else { "turned off" });
+            return;
+        }
+        let commands = self.commands[step.number as usize].all();
+        let test = hzb::TestBoxes {
+            bounds: world.bounds(),
+            commands,
+            shown: self.shown.all(),
+            views: self.shape.view(),
+            drawn: commands,
+        };
+        if self.kinds > 0 {
+            f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());
+        }
+    }
+
+    /// Grids of reductions, empty if the last step drew nothing.
+    pub fn reductions(&self) -> BufferRef<u32> {
+        self.reductions[1].all()
+    }
+
+    /// The draws of what a step found, one a kind of primitive.
+    pub fn draws<'a>(&'a self, world: &'a World, step: u32) -> impl Iterator<Item = IndexedIndirect> + 'a {
+        self.assert_made_for(world);
+        let (commands, totals) = (&self.commands[step as usize], &self.totals[step as usize]);
+        world.ranges().iter().enumerate().map(move |(kind, range)| IndexedIndirect {
+            vertices: world.vertices().into(),
+            instances: world.objects().into(),
+            indices: world.indices().into(),
+            commands: commands.all().from(range.first as usize).into(),
+            count: Some(totals.all().from(kind)),
+            max_draws: range.count,
+            primitives: range.primitives,
+        })
+    }
+
+    fn assert_made_for(&self, world: &World) {
+        assert_eq!(self.world, world.id(), "these lists were made for another world: make the method again");
+    }
+}

@@ -1,0 +1,2 @@
+//! The stages of `hzb-iterative` in plain Rust: their definition.
+

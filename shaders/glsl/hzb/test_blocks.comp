@@ -1,0 +1,39 @@
+// hzb/test_blocks: which blocks may have objects that are due in this step, and do not lie wholly behind what was drawn? In step k
+// are due what the last frame saw of range k and what it did not see of range k - 1. A block once hidden stays so for the rest of
+// the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
+#include "footprint.glsl"
+#include "pyramid.glsl"
+#include "steps.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
+// Something was drawn before: there is a pyramid of this frame.
+layout(constant_id = 1) const bool BEHIND = true;
+layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
+layout(set = 0, binding = 1, scalar) buffer Spans { BlockSpan items[]; } spans;
+layout(set = 0, binding = 2, scalar) readonly buffer Farthest { uint items[]; } farthest;
+layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
+layout(set = 0, binding = 4, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
+layout(set = 0, binding = 5, scalar) readonly buffer Pyramid { float items[]; } pyramid;
+// By block: 1 if it is due.
+layout(set = 0, binding = 6, scalar) writeonly buffer Due { uint items[]; } due;
+layout(push_constant, scalar) uniform Push { uint step; } push;
+#include "hidden.glsl"
+
+void main() {
+    uint block = invocation_index();
+    StepView all = views.items[0];
+    if (block >= all.block_count) return;
+    BlockSpan span = spans.items[block];
+    float outermost = uintBitsToFloat(farthest.items[0]);
+    bool is_due = span.begin <= span.end && push.step >= range_of(span.begin, outermost, all.range_count, all.share)
+        && push.step <= range_of(span.end, outermost, all.range_count, all.share) + 1u;
+    if (BEHIND && is_due && !is_visible(bounds.items[block], all.view, all.coarsest_level)) {
+        is_due = false;
+        spans.items[block] = BlockSpan(1.0, 0.0);
+    }
+    due.items[block] = is_due ? 1u : 0u;
+}
