@@ -171,8 +171,12 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         Op::DispatchIndirect { stage, groups } => format!("[groups from {}] {}", name(groups.id), bindings(stage)),
         Op::Draw { stage, draw, .. } => {
             let count = draw.count.map_or(String::new(), |count| format!(" count={}", name(count.id)));
+            let instances = match stage.info.instance_stride {
+                0 => String::new(),
+                _ => format!(" instances={}", name(resource(&draw.instances))),
+            };
             format!(
-                "[up to {} draws] commands={}{count} {}",
+                "[up to {} draws] commands={}{count}{instances} {}",
                 draw.max_draws,
                 name(resource(&draw.commands)),
                 bindings(stage)

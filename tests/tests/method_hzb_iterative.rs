@@ -1,4 +1,46 @@
 //! The laws of `hzb-iterative`, its stages against their twins, and what depth ranges promise.
 
+#[path = "method_hzb_iterative/stages.rs"]
+mod stages;
+
 harness::exact_method_tests!("hzb-iterative");
 harness::skipping_method_tests!("hzb-iterative");
+
+/// Settings unlike the default; they take turns at the worlds.
+const SETTINGS: [&[(&str, &str)]; 6] = [
+    &[("ranges", "1")],
+    &[("ranges", "2"), ("boxes", "false")],
+    &[("ranges", "3"), ("factor", "16"), ("small", "0")],
+    &[("ranges", "5"), ("every", "1")],
+    &[("ranges", "5"), ("small", "0"), ("texels", "2")],
+    &[("ranges", "1"), ("small", "0"), ("every", "64")],
+];
+
+fn setting(set: &[(&str, &str)]) -> Subject {
+    set.iter().fold(Subject::named("hzb-iterative"), |subject, (option, value)| subject.with(option, value))
+}
+
+#[test]
+fn any_setting_is_exact() {
+    let gpu = gpu();
+    for (number, subject) in SETTINGS.map(setting).into_iter().enumerate() {
+        let cases = worlds::special().into_iter().enumerate();
+        for (_, case) in cases.filter(|(case, _)| harness::takes_turn(number, *case, 3)) {
+            assert_none(&laws::no_visible_object_is_culled(&gpu, &subject, &case));
+        }
+        assert_none(&laws::a_resize_hides_nothing(&gpu, &subject, &worlds::walled(200)));
+        assert_none(&laws::a_camera_cut_hides_nothing(&gpu, &subject, &worlds::walled(200)));
+    }
+}
+
+#[test]
+fn any_size_is_exact() {
+    let gpu = gpu();
+    assert_none(&laws::any_size_is_exact(&gpu, &setting(SETTINGS[4]), &worlds::walled(100)));
+}
+
+#[test]
+fn what_a_wall_hides_is_culled() {
+    let gpu = gpu();
+    assert_none(&laws::what_a_wall_hides_is_culled(&gpu, &Subject::named("hzb-iterative"), &worlds::walled(400)));
+}

@@ -1,6 +1,7 @@
 //! The main job: methods × frames, once for the clock and once for the truth, into results.
 
 mod pairs;
+mod stages;
 
 use crate::metrics::{FrameImages, MethodErrors, Truth};
 use crate::results::{self, FrameMs, Frames, Results, SCHEMA};
@@ -12,6 +13,7 @@ use anyhow::{Context, Result};
 use culling::{Entry, Options, VisibleSets, Work};
 use engine::{Capture, FrameReport};
 use pairs::Pair;
+use stages::{stage_times, stages};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -287,48 +289,6 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
     }
 }
 
-/// By stage, its time in each frame; a stage that runs several times in a frame is summed.
-fn stage_times(reports: &[FrameReport]) -> BTreeMap<String, Vec<Option<f64>>> {
-    let mut times: BTreeMap<String, Vec<Option<f64>>> = BTreeMap::new();
-    for (frame, report) in reports.iter().enumerate() {
-        for stage in &report.stages {
-            let of_stage = times.entry(stage.label.clone()).or_insert_with(|| vec![None; reports.len()]);
-            *of_stage[frame].get_or_insert(0.0) += stage.ms;
-        }
-    }
-    times
-}
-
-/// One row a stage, in the order in which the frame has them.
-fn stages(reports: &[FrameReport]) -> Vec<results::Stage> {
-    let times = stage_times(reports);
-    let mut order: Vec<&str> = Vec::new();
-    let mut skipped: BTreeMap<&str, (u32, &'static str)> = BTreeMap::new();
-    for report in reports {
-        for skip in &report.skips {
-            let (count, reason) = skipped.entry(&skip.label).or_insert((0, skip.reason));
-            (*count, *reason) = (*count + 1, skip.reason);
-        }
-        let labels = report.stages.iter().map(|stage| &stage.label).chain(report.skips.iter().map(|skip| &skip.label));
-        for label in labels {
-            if !order.contains(&label.as_str()) {
-                order.push(label);
-            }
-        }
-    }
-    let total: f64 = times.values().flatten().flatten().sum();
-    let row = |name: &str| {
-        let samples: Vec<f64> = times.get(name).into_iter().flatten().copied().flatten().collect();
-        let (skipped, reason) =
-            skipped.get(name).map_or((0, None), |(count, reason)| (*count, Some((*reason).to_owned())));
-        // From +0: the sum of nothing is -0, which would be printed so.
-        let share = if total > 0.0 { samples.iter().fold(0.0, |sum, ms| sum + ms) / total } else { 0.0 };
-        let median_ms = stats::median(&samples).unwrap_or(0.0);
-        results::Stage { name: name.to_owned(), median_ms, share, skipped, reason }
-    };
-    order.into_iter().map(row).collect()
-}
-
 /// Results of a session without methods: what ran, on what.
 pub fn header(session: &Session, command: &str) -> Results {
     let info = session.gpu.info();
@@ -377,31 +337,4 @@ pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
     results.write_json(&folder.join("results.json"))?;
     results.write_csv(&folder.join("results.csv"))?;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use engine::{Skip, StageTime};
-
-    fn report(stages: &[(&str, f64)], skips: &[&str]) -> FrameReport {
-        FrameReport {
-            stages: stages.iter().map(|(label, ms)| StageTime { label: (*label).into(), ms: *ms }).collect(),
-            skips: skips.iter().map(|label| Skip { label: (*label).into(), reason: "not needed" }).collect(),
-            ..FrameReport::default()
-        }
-    }
-
-    #[test]
-    fn stages_are_summed_within_a_frame_and_null_where_they_did_not_run() {
-        let reports = [report(&[("a", 1.0), ("b", 2.0), ("a", 3.0)], &["c"]), report(&[("b", 4.0)], &["a", "c"])];
-        let times = stage_times(&reports);
-        let expected = [("a".to_owned(), vec![Some(4.0), None]), ("b".to_owned(), vec![Some(2.0), Some(4.0)])];
-        assert_eq!(times, expected.into());
-        let rows = stages(&reports);
-        let shown: Vec<_> = rows.iter().map(|row| (row.name.as_str(), row.median_ms, row.skipped)).collect();
-        assert_eq!(shown, [("a", 4.0, 1), ("b", 3.0, 0), ("c", 0.0, 2)]);
-        assert_eq!((rows[0].share, rows[1].share), (0.4, 0.6));
-        assert_eq!(format!("{:.1}", rows[2].share), "0.0", "not -0.0");
-    }
 }

@@ -61,7 +61,8 @@ pub fn measure_boxes(
     (selected, depths, farthest)
 }
 
-fn depth_of(bound: &Bounds, view: &CullView, [x, y, z, w]: [f32; 4]) -> f32 {
+/// Where a box begins along the view. Twin of `begin_of_box`.
+pub fn depth_of(bound: &Bounds, view: &CullView, [x, y, z, w]: [f32; 4]) -> f32 {
     let coarse = Vec3::from(bound.centre_high) - Vec3::from(view.camera_high);
     let centre = coarse + (Vec3::from(bound.centre_low) - Vec3::from(view.camera_low));
     let half = Vec3::from(bound.half_extent);
@@ -79,7 +80,7 @@ fn depth_of(bound: &Bounds, view: &CullView, [x, y, z, w]: [f32; 4]) -> f32 {
 pub fn assign_ranges(selected: &[u32], depths: &[f32], farthest: f32, cuts: &Cuts) -> (Vec<u32>, Vec<Vec<u32>>) {
     let outermost = cuts.outermost.unwrap_or(farthest);
     let place = |(selected, depth): (&u32, &f32)| {
-        let range = range_of(*depth, outermost, cuts);
+        let range = range_of(*depth, outermost, cuts.ranges, cuts.share);
         match *selected {
             SELECT_NONE => SELECT_NONE,
             SELECT_TESTED if cuts.show_beyond && *depth > outermost => range << PLACE_RANGE_SHIFT | SELECT_SHOWN,
@@ -92,11 +93,12 @@ pub fn assign_ranges(selected: &[u32], depths: &[f32], farthest: f32, cuts: &Cut
     (places, counts)
 }
 
-fn range_of(depth: f32, outermost: f32, cuts: &Cuts) -> u32 {
-    let (mut range, mut end) = (cuts.ranges - 1, outermost * cuts.share);
+/// The range of a depth. Twin of `range_of`.
+pub fn range_of(depth: f32, outermost: f32, ranges: u32, share: f32) -> u32 {
+    let (mut range, mut end) = (ranges - 1, outermost * share);
     while range > 0 && depth <= end {
         range -= 1;
-        end *= cuts.share;
+        end *= share;
     }
     range
 }

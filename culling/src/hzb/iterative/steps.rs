@@ -62,7 +62,9 @@ impl Steps {
             counts: words("counts", kinds * blocks)?,
             starts: words("starts", kinds * blocks)?,
             commands: (0..most_steps).map(commands).collect::<std::result::Result<_, _>>()?,
-            totals: (0..most_steps).map(|step| words(&format!("totals{step}"), kinds)).collect::<std::result::Result<_, _>>()?,
+            totals: (0..most_steps)
+                .map(|step| words(&format!("totals{step}"), kinds))
+                .collect::<std::result::Result<_, _>>()?,
             boxes: Buffer::with_data(gpu, "hzb.boxes", &no_boxes, Placement::Storage)?,
             shape: BoxShape::new(gpu, "hzb.boxes", kinds as u32)?,
             reductions: [words("full_grids", 3 * MOST_REDUCTIONS)?, words("grids", 3 * MOST_REDUCTIONS)?],
@@ -80,7 +82,14 @@ impl Steps {
     ///
     /// # Panics
     /// If the lists were made for another world: they would not have the room.
-    pub fn look(&mut self, world: &World, view: &View, depth_plane: [f32; 4], range_count: u32, pyramid: &Pyramid) -> Result<()> {
+    pub fn look(
+        &mut self,
+        world: &World,
+        view: &View,
+        depth_plane: [f32; 4],
+        range_count: u32,
+        pyramid: &Pyramid,
+    ) -> Result<()> {
         self.assert_made_for(world);
         let first_of = |kind: usize| world.ranges().get(kind).map_or(u32::MAX, |range| range.first);
         let all = StepView {
@@ -134,7 +143,10 @@ impl Steps {
         let subgroup_size = self.subgroup_size;
         let (counts, kind_count) = (self.counts.all(), self.kinds);
         let constants = hzb::ListBlocksConstants { subgroup_size };
-        f.dispatch_groups(hzb::ListBlocks { due: self.due.all(), blocks, counts, block_count, kind_count, constants }, 1);
+        f.dispatch_groups(
+            hzb::ListBlocks { due: self.due.all(), blocks, counts, block_count, kind_count, constants },
+            1,
+        );
         let test = hzb::TestObjects {
             bounds: world.bounds(),
             seen: step.seen,

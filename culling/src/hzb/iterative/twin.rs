@@ -1,2 +1,118 @@
-//! The stages of `hzb-iterative` in plain Rust: their definition.
+//! The stages of `hzb-iterative` in plain Rust: their definition. A step's lists are in object order.
 
+use crate::boxes::twin::{crosses_near, grown};
+use crate::frustum::twin::{clip_from_bounds, footprint_widening, left_out, outside_frustum};
+use crate::hzb::twin::{is_visible, PyramidTest};
+use crate::pack::twin as pack;
+use crate::roc::twin::{depth_of, range_of};
+use glam::Vec3;
+use shaders::types::*;
+
+/// Out of view, or known to be hidden.
+const NOWHERE: BlockSpan = BlockSpan { begin: 1.0, end: 0.0 };
+
+/// Where each block lies along the view, and where the farthest of those in view begins. Twin of `hzb/measure_blocks`.
+pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, f32) {
+    let span = |block: &Bounds| {
+        if block.flags & OBJECT_ALWAYS_KEPT != 0 {
+            return BlockSpan { begin: 0.0, end: 3.0e38 };
+        }
+        if outside_frustum(&clip_from_bounds(block, &all.view), footprint_widening(block.flags, &all.view)) {
+            return NOWHERE;
+        }
+        let coarse = Vec3::from(block.centre_high) - Vec3::from(all.view.camera_high);
+        let centre = coarse + (Vec3::from(block.centre_low) - Vec3::from(all.view.camera_low));
+        let [x, y, z, w] = all.depth_plane;
+        let (normal, half) = (Vec3::new(x, y, z), Vec3::from(block.half_extent));
+        let (middle, reach) = (normal.dot(centre) + w, normal.abs().dot(half));
+        let slack = CLIP_ERROR * (normal.abs().dot(centre.abs() + half) + w.abs());
+        BlockSpan { begin: (middle - reach - slack).max(0.0), end: (middle + reach + slack).max(0.0) }
+    };
+    let spans: Vec<BlockSpan> = blocks.iter().map(span).collect();
+    let farthest = spans.iter().filter(|span| span.begin <= span.end).map(|span| span.begin).fold(0.0, f32::max);
+    (spans, farthest)
+}
+
+/// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `pyramid`: of what was drawn before, if
+/// anything was. Twin of `hzb/test_blocks`.
+pub fn test_blocks(
+    blocks: &[Bounds],
+    spans: &mut [BlockSpan],
+    farthest: f32,
+    all: &StepView,
+    pyramid: Option<&PyramidTest<'_>>,
+    step: u32,
+) -> Vec<u32> {
+    let range = |depth: f32| range_of(depth, farthest, all.range_count, all.share);
+    let mut due = Vec::with_capacity(blocks.len());
+    for (block, span) in blocks.iter().zip(spans) {
+        let ranges = range(span.begin)..=range(span.end) + 1;
+        let is_due = span.begin <= span.end && ranges.contains(&step);
+        let is_hidden = is_due && pyramid.is_some_and(|pyramid| !is_visible(block, &all.view, pyramid));
+        if is_hidden {
+            *span = NOWHERE;
+        }
+        due.push(u32::from(is_due && !is_hidden));
+    }
+    due
+}
+
+/// The list of the blocks that are due: header and blocks, in order. Twin of `hzb/list_blocks`.
+pub fn list_blocks(due: &[u32]) -> Vec<u32> {
+    let listed: Vec<u32> = (0..due.len() as u32).filter(|block| due[*block as usize] != 0).collect();
+    let count = listed.len() as u32;
+    let across = [count.min(MOST_BLOCKS_ACROSS), count.div_ceil(MOST_BLOCKS_ACROSS), 1, count];
+    across.into_iter().chain([count.div_ceil(64), 1, 1, 0]).chain(listed).collect()
+}
+
+/// What becomes of each object of the listed blocks in a step: STEP_*; of all others nothing is said. Twin of `hzb/test_objects`.
+pub fn test_objects(
+    (bounds, seen): (&[Bounds], &[u32]),
+    listed: &[u32],
+    farthest: f32,
+    all: &StepView,
+    pyramid: Option<&PyramidTest<'_>>,
+    (step, boxes): (u32, bool),
+) -> Vec<Option<u32>> {
+    let becomes = |object: usize| {
+        let (bound, seen) = (&bounds[object], seen[object] != 0);
+        let kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
+        let begin = if kept { 0.0 } else { depth_of(bound, &all.view, all.depth_plane) };
+        if step != range_of(begin, farthest, all.range_count, all.share) + u32::from(!seen) {
+            return STEP_HIDDEN;
+        }
+        let shown = match pyramid {
+            Some(pyramid) => is_visible(bound, &all.view, pyramid),
+            None => kept || !left_out(&clip_from_bounds(bound, &all.view), bound.flags, &all.view),
+        };
+        let rasterises = || !kept && !crosses_near(&clip_from_bounds(&grown(bound, &all.view), &all.view));
+        match (shown, boxes && pyramid.is_some() && !seen && shown && rasterises()) {
+            (false, _) => STEP_HIDDEN,
+            (true, false) => STEP_SHOWN,
+            (true, true) => STEP_TESTED,
+        }
+    };
+    let is_listed = |object: usize| listed.contains(&(object as u32 / BLOCK_OBJECTS));
+    (0..bounds.len()).map(|object| is_listed(object).then(|| becomes(object))).collect()
+}
+
+/// Where the commands of each listed block begin, and how many there are, of one kind of primitive. Twin of `hzb/scan_blocks`.
+pub fn scan_blocks(counts: &[u32]) -> (Vec<u32>, u32) {
+    pack::scan_counts(counts)
+}
+
+/// The commands of a step, in object order; `becomes` as [`test_objects`] leaves it for the objects of one kind of primitive. Twin of
+/// `hzb/write_blocks`.
+pub fn write_blocks(
+    becomes: &[u32],
+    object_meshes: &[u32],
+    meshes: &[MeshRange],
+    small_indices: u32,
+) -> Vec<DrawCommand> {
+    let mut commands = pack::write_commands(becomes, object_meshes, meshes);
+    for command in &mut commands {
+        let is_tested = becomes[command.first_instance as usize] == STEP_TESTED && command.index_count > small_indices;
+        command.instance_count = u32::from(!is_tested);
+    }
+    commands
+}

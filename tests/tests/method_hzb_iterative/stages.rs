@@ -1,0 +1,315 @@
+//! The stages of `hzb-iterative` against their twins: boxes by chance before and behind a depth by chance, every kind of camera, lists of
+//! no, one and many blocks, three kinds of primitive.
+
+use culling::hzb::iterative::twin;
+use culling::hzb::twin::{pyramid, PyramidTest};
+use culling::roc::depth_plane;
+use culling::View;
+use engine::{Buffer, Gpu, Placement};
+use harness::occludees::Occludees;
+use harness::worlds::special_projections;
+use harness::{gpu, Random};
+use scenes::{Pose, Shot};
+use shaders::hzb;
+use shaders::types::*;
+
+const SIZE: [u32; 2] = [161, 97];
+const BOXES: usize = 4_000;
+
+fn stored<T: bytemuck::Pod>(gpu: &Gpu, data: &[T]) -> Buffer<T> {
+    Buffer::with_data(gpu, "test", data, Placement::Storage).unwrap()
+}
+
+fn words(gpu: &Gpu, len: usize) -> Buffer<u32> {
+    stored(gpu, &vec![0xdead_beef; len])
+}
+
+/// Boxes, what a frame looks through, and the pyramid of a depth that hides some of them.
+struct Input {
+    bounds: Vec<Bounds>,
+    all: StepView,
+    levels: Vec<PyramidLevel>,
+    texels: Vec<f32>,
+}
+
+impl Input {
+    fn by_chance(random: &mut Random, gpu: &Gpu, projection: scenes::Projection) -> Self {
+        let pose = Pose { position: random.vector() * 1e3, rotation: random.turn() };
+        let shot = Shot { pose, projection, seconds: 0.0 };
+        let occludees = Occludees::by_chance(random, &shot, SIZE, gpu.snap_px(), BOXES);
+        let (levels, coarsest_level) = culling::hzb::layout(SIZE);
+        let all = StepView {
+            view: occludees.view,
+            depth_plane: depth_plane(&View::new(&shot, SIZE, 0, gpu.snap_px())),
+            object_count: BOXES as u32,
+            block_count: BOXES as u32,
+            coarsest_level,
+            range_count: 3,
+            share: 0.5,
+            second_kind: 2_000,
+            third_kind: 3_001,
+        };
+        Input { texels: pyramid(&occludees.depth, SIZE, &levels), bounds: occludees.bounds, all, levels }
+    }
+
+    fn test(&self) -> PyramidTest<'_> {
+        let coarsest_level = self.all.coarsest_level;
+        PyramidTest { levels: &self.levels, texels: &self.texels, coarsest_level, footprint_texels: 4 }
+    }
+}
+
+/// At a tie of roundings stage and twin may decide differently, but not often.
+#[track_caller]
+fn assert_few(differ: usize, all: usize, what: &str) {
+    println!("{what}: {differ} of {all} differ");
+    assert!(differ <= all / 500, "{what}: {differ} of {all} differ");
+}
+
+#[test]
+fn blocks_are_measured_and_tested_as_the_twins_say() {
+    let gpu = gpu();
+    let mut random = Random::new(1301);
+    let (mut all_blocks, mut differ, mut due_blocks) = (0, 0, 0);
+    for (name, projection) in special_projections() {
+        let input = Input::by_chance(&mut random, &gpu, projection);
+        let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[input.all]));
+        let (levels, texels) = (stored(&gpu, &input.levels), stored(&gpu, &input.texels));
+        let (spans, farthest) = (stored(&gpu, &vec![BlockSpan::default(); BOXES]), stored(&gpu, &[0u32]));
+        let mut f = gpu.frame();
+        let measure = hzb::MeasureBlocks {
+            bounds: bounds.all(),
+            spans: spans.all(),
+            farthest: farthest.all(),
+            views: views.all(),
+        };
+        f.dispatch(measure, BOXES as u32);
+        f.finish().unwrap();
+        let mut measured = spans.read().unwrap();
+        let farthest_begin = f32::from_bits(farthest.read().unwrap()[0]);
+        let (twin_spans, twin_farthest) = twin::measure_blocks(&input.bounds, &input.all);
+        assert!(
+            (farthest_begin - twin_farthest).abs() <= 1e-4 * twin_farthest,
+            "{name}: {farthest_begin} {twin_farthest}"
+        );
+        let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (a.abs() + b.abs()) + 1e-3;
+        let same = |(a, b): &(&BlockSpan, &BlockSpan)| near(a.begin, b.begin) && near(a.end, b.end);
+        differ += measured.iter().zip(&twin_spans).filter(|pair| !same(pair)).count();
+        for step in 0..=3 {
+            let due = words(&gpu, BOXES);
+            let behind = step > 0;
+            let mut f = gpu.frame();
+            let test = hzb::TestBlocks {
+                bounds: bounds.all(),
+                spans: spans.all(),
+                farthest: farthest.all(),
+                views: views.all(),
+                levels: levels.all(),
+                pyramid: texels.all(),
+                due: due.all(),
+                step,
+                constants: hzb::TestBlocksConstants { footprint_texels: 4, behind },
+            };
+            f.dispatch(test, BOXES as u32);
+            f.finish().unwrap();
+            let pyramid = behind.then(|| input.test());
+            let twin_due =
+                twin::test_blocks(&input.bounds, &mut measured, farthest_begin, &input.all, pyramid.as_ref(), step);
+            let found = due.read().unwrap();
+            differ += found.iter().zip(&twin_due).filter(|(a, b)| a != b).count();
+            due_blocks += found.iter().sum::<u32>() as usize;
+            measured = spans.read().unwrap();
+        }
+        all_blocks += 4 * BOXES;
+    }
+    assert!(
+        due_blocks > all_blocks / 20 && due_blocks < all_blocks / 2,
+        "{due_blocks} of {all_blocks} due prove little"
+    );
+    assert_few(differ, all_blocks, "blocks");
+}
+
+#[test]
+fn an_object_is_due_in_a_step_of_its_block() {
+    // What is not looked at is not drawn: the spans of blocks must hold the ranges of their objects, roundings included.
+    let gpu = gpu();
+    let mut random = Random::new(77);
+    for (name, projection) in special_projections() {
+        let mut input = Input::by_chance(&mut random, &gpu, projection);
+        input.all.range_count = MOST_STEP_RANGES;
+        let (spans, farthest) = twin::measure_blocks(&input.bounds, &input.all);
+        let range = |depth| culling::roc::twin::range_of(depth, farthest, input.all.range_count, input.all.share);
+        for (bound, span) in input.bounds.iter().zip(spans).filter(|(_, span)| span.begin <= span.end) {
+            let kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
+            let begin =
+                if kept { 0.0 } else { culling::roc::twin::depth_of(bound, &input.all.view, input.all.depth_plane) };
+            assert!((range(span.begin)..=range(span.end)).contains(&range(begin)), "{name}: {bound:?}");
+        }
+    }
+}
+
+#[test]
+fn blocks_are_listed_as_the_twin_says() {
+    let gpu = gpu();
+    let mut random = Random::new(5);
+    for (blocks, one_in) in [(1, 1), (1, 9), (63, 2), (64, 1), (1_000, 7), (70_001, 1), (70_001, 1_000)] {
+        let due: Vec<u32> = (0..blocks).map(|block| u32::from(block % one_in == 0 && random.below(9) > 0)).collect();
+        let (due_gpu, list, counts) = (stored(&gpu, &due), words(&gpu, 8 + blocks), words(&gpu, 2 * blocks));
+        let mut f = gpu.frame();
+        let stage = hzb::ListBlocks {
+            due: due_gpu.all(),
+            blocks: list.all(),
+            counts: counts.all(),
+            block_count: blocks as u32,
+            kind_count: 2,
+            constants: hzb::ListBlocksConstants { subgroup_size: gpu.subgroup_size() },
+        };
+        f.dispatch_groups(stage, 1);
+        f.finish().unwrap();
+        let (twin, mut found) = (twin::list_blocks(&due), list.read().unwrap());
+        found[7] = 0; // the header's last word has no meaning
+        assert_eq!(found[..twin.len()], twin, "{blocks} blocks");
+        let listed = twin.len() - LISTED_HEADER as usize;
+        let counts = counts.read().unwrap();
+        assert!(
+            (0..2).all(|kind| counts[kind * blocks..][..listed].iter().all(|count| *count == 0)),
+            "{blocks} blocks"
+        );
+    }
+}
+
+#[test]
+fn objects_are_found_and_their_commands_written_as_the_twins_say() {
+    let gpu = gpu();
+    let mut random = Random::new(4711);
+    let meshes: Vec<MeshRange> =
+        (0..40).map(|mesh| MeshRange { first_index: 7 * mesh, index_count: 3 * mesh, vertex_offset: -5 }).collect();
+    let blocks = BOXES.div_ceil(BLOCK_OBJECTS as usize);
+    let (mut all_objects, mut differ, mut outcomes) = (0, 0, [0usize; 3]);
+    for (number, (name, projection)) in special_projections().into_iter().enumerate() {
+        let mut input = Input::by_chance(&mut random, &gpu, projection);
+        input.all.block_count = blocks as u32;
+        let farthest = twin::measure_blocks(&input.bounds, &input.all).1;
+        let (step, behind) = (number as u32 % 3, number % 4 != 0);
+        let seen: Vec<u32> = (0..BOXES).map(|_| random.below(2) as u32).collect();
+        let object_meshes: Vec<u32> = (0..BOXES).map(|_| random.below(40) as u32).collect();
+        let list = twin::list_blocks(&(0..blocks).map(|_| u32::from(random.below(3) > 0)).collect::<Vec<_>>());
+        let listed = &list[LISTED_HEADER as usize..];
+        let found = run(&gpu, &input, (&seen, &object_meshes, &meshes), &list, farthest, (step, behind));
+
+        let pyramid = behind.then(|| input.test());
+        let twin =
+            twin::test_objects((&input.bounds, &seen), listed, farthest, &input.all, pyramid.as_ref(), (step, true));
+        // What the GPU made of each object; small meshes are drawn without a test of their box.
+        let small = |object: usize| meshes[object_meshes[object] as usize].index_count <= SMALL;
+        let mut becomes = vec![STEP_HIDDEN; BOXES];
+        for (object, twin) in twin.iter().enumerate() {
+            let Some(twin) = *twin else { continue };
+            let expected = if twin == STEP_TESTED && small(object) { STEP_SHOWN } else { twin };
+            differ += usize::from(found.shown[object] != expected);
+            outcomes[found.shown[object] as usize] += 1;
+            becomes[object] = found.shown[object];
+            all_objects += 1;
+        }
+        let kinds = [0..2_000, 2_000..3_001, 3_001..BOXES];
+        for (kind, objects) in kinds.into_iter().enumerate() {
+            let of_kind = |object: usize| if objects.contains(&object) { becomes[object] } else { STEP_HIDDEN };
+            let of_kind: Vec<u32> = (0..BOXES).map(of_kind).collect();
+            let expected = twin::write_blocks(&of_kind, &object_meshes, &meshes, SMALL);
+            let per_block = |block: &u32| {
+                let objects = of_kind.iter().skip((block * BLOCK_OBJECTS) as usize).take(BLOCK_OBJECTS as usize);
+                objects.filter(|becomes| **becomes != STEP_HIDDEN).count() as u32
+            };
+            let (starts, total) = twin::scan_blocks(&listed.iter().map(per_block).collect::<Vec<_>>());
+            assert_eq!(found.starts[kind * blocks..][..listed.len()], starts, "{name}, kind {kind}");
+            assert_eq!((found.totals[kind], found.boxes[kind].instance_count), (total, total), "{name}, kind {kind}");
+            assert_eq!(found.commands[objects.start..][..expected.len()], expected, "{name}, kind {kind}");
+        }
+        let drawn = found.totals.iter().any(|total| *total > 0);
+        assert_eq!(found.grids, if drawn { [9, 2, 1] } else { [0, 2, 1] }, "{name}");
+    }
+    assert!(outcomes.iter().all(|count| *count > all_objects / 100), "{outcomes:?} of {all_objects} prove little");
+    assert_few(differ, all_objects, "objects");
+}
+
+/// Indices of meshes that need no test of their box.
+const SMALL: u32 = 30;
+
+struct Found {
+    shown: Vec<u32>,
+    starts: Vec<u32>,
+    totals: Vec<u32>,
+    boxes: Vec<DrawCommand>,
+    grids: Vec<u32>,
+    commands: Vec<DrawCommand>,
+}
+
+fn run(
+    gpu: &Gpu,
+    input: &Input,
+    (seen, object_meshes, meshes): (&[u32], &[u32], &[MeshRange]),
+    list: &[u32],
+    farthest: f32,
+    (step, behind): (u32, bool),
+) -> Found {
+    let block_count = input.all.block_count;
+    let (bounds, views, list) = (stored(gpu, &input.bounds), stored(gpu, &[input.all]), stored(gpu, list));
+    let (levels, texels) = (stored(gpu, &input.levels), stored(gpu, &input.texels));
+    let (seen, object_meshes, meshes) = (stored(gpu, seen), stored(gpu, object_meshes), stored(gpu, meshes));
+    let farthest = stored(gpu, &[farthest.to_bits()]);
+    let (shown, totals, grids) = (words(gpu, BOXES), words(gpu, 3), words(gpu, 3));
+    let (counts, starts) = (stored(gpu, &vec![0u32; 3 * block_count as usize]), words(gpu, 3 * block_count as usize));
+    let (boxes, commands) =
+        (stored(gpu, &[DrawCommand::default(); 3]), stored(gpu, &vec![DrawCommand::default(); BOXES]));
+    let full_grids = stored(gpu, &[9u32, 2, 1]);
+    let mut f = gpu.frame();
+    let test = hzb::TestObjects {
+        bounds: bounds.all(),
+        seen: seen.all(),
+        farthest: farthest.all(),
+        views: views.all(),
+        levels: levels.all(),
+        pyramid: texels.all(),
+        blocks: list.all(),
+        shown: shown.all(),
+        counts: counts.all(),
+        step,
+        constants: hzb::TestObjectsConstants { footprint_texels: 4, behind, boxes: true },
+    };
+    f.dispatch_indirect(test, list.all());
+    let scan = hzb::ScanBlocks {
+        blocks: list.all(),
+        counts: counts.all(),
+        starts: starts.all(),
+        totals: totals.all(),
+        boxes: boxes.all(),
+        full_grids: full_grids.all(),
+        grids: grids.all(),
+        block_count,
+        kind_count: 3,
+        reductions: 1,
+        constants: hzb::ScanBlocksConstants { subgroup_size: gpu.subgroup_size() },
+    };
+    f.dispatch_groups(scan, 1);
+    let write = hzb::WriteBlocks {
+        blocks: list.all(),
+        shown: shown.all(),
+        counts: counts.all(),
+        starts: starts.all(),
+        views: views.all(),
+        object_meshes: object_meshes.all(),
+        meshes: meshes.all(),
+        commands: commands.all(),
+        small_indices: SMALL,
+    };
+    f.dispatch_indirect(write, list.all().from(LISTED_GRID as usize));
+    f.finish().unwrap();
+    let read = |buffer: &Buffer<u32>| buffer.read().unwrap();
+    Found {
+        shown: read(&shown),
+        starts: read(&starts),
+        totals: read(&totals),
+        boxes: boxes.read().unwrap(),
+        grids: read(&grids),
+        commands: commands.read().unwrap(),
+    }
+}
