@@ -3,6 +3,7 @@
 //! A [`Method`] records a frame that draws what may be visible of a [`World`] as seen through a [`View`]. Methods are listed
 //! in [`METHODS`]; adding one is a folder, a line in that list and a test file (see `culling/README.md`).
 
+pub mod auto;
 pub mod boxes;
 pub mod eovc;
 mod error;

@@ -90,6 +90,19 @@ pub trait Method {
         Ok(None)
     }
 
+    /// Told what the last frame took, in milliseconds, if that was measured without anything that slows it down: for methods that decide by
+    /// time.
+    fn measured(&mut self, _frame_ms: f64) {}
+
+    /// The run starts again from its first frame to measure something else: decisions that came from measured times are to be taken as
+    /// they were.
+    fn repeat(&mut self) {}
+
+    /// What was decided in each frame and why, a line each; empty for methods that decide nothing.
+    fn choices(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Forgets earlier frames: after a camera cut, or when a run starts again from its first frame.
     fn forget(&mut self) -> Result<()> {
         Ok(())

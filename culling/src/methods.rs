@@ -1,6 +1,6 @@
 //! The list of methods. One line a method.
 
-use crate::{eovc, farthest, frustum, hzb, none, reference, roc, woc};
+use crate::{auto, eovc, farthest, frustum, hzb, none, reference, roc, woc};
 use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
 
 /// A method that can be chosen.
@@ -109,6 +109,14 @@ pub const METHODS: &[Entry] = &[
         guarantee: Guarantee::Exact,
         options: eovc::OPTIONS,
         make: eovc::make,
+    },
+    Entry {
+        id: "auto",
+        title: "whichever exact method costs least here and now, by measured times",
+        source: "Sightline",
+        guarantee: Guarantee::Exact,
+        options: auto::OPTIONS,
+        make: auto::make,
     },
     Entry {
         id: "ref",

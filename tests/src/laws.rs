@@ -81,7 +81,7 @@ fn differences(place: &str, one: &Take, other: &Take) -> Vec<String> {
 
 /// Methods whose sets follow from fragments as they are drawn: one of two objects at the same depth owns the pixel, and an
 /// object drawn before its occluder is seen. Their depths do not depend on the order all the same.
-const ORDER_DECIDES: [&str; 4] = ["ref", "roc", "eovc", "hzb-iterative"];
+const ORDER_DECIDES: [&str; 5] = ["ref", "roc", "eovc", "hzb-iterative", "auto"];
 
 /// Objects in another order: the same objects are drawn, and depths are the same. Only for scenes that do not move.
 pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {

@@ -62,7 +62,7 @@ pub fn faults(session: &mut Session, id: &str, set: &[(&str, &str)]) -> Vec<Stri
     let mut faults = Vec::new();
     for frame in 0..session.frames() {
         let place = format!("{} in {} {}, frame {frame}", measured.label(), session.scene.name, session.path().name());
-        let report = timed.timed(session, frame).unwrap();
+        let report = timed.staged(session, frame).unwrap();
         let timed = culling::drawn_objects(&session.gpu, &session.world, &report).unwrap();
         let truth = truth.frame(session, frame).unwrap();
         let found = measured.measured(session, frame, &truth).unwrap();

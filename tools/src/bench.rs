@@ -144,6 +144,12 @@ fn warm_up(session: &mut Session, contenders: &mut [Contender], warmup: usize) -
     Ok(())
 }
 
+/// Begins the same frames once more, with the same decisions.
+fn repeat(session: &mut Session, contenders: &mut [Contender], warmup: usize) -> Result<()> {
+    contenders.iter_mut().for_each(|contender| contender.method.repeat());
+    warm_up(session, contenders, warmup)
+}
+
 fn time(
     session: &mut Session,
     contenders: &mut [Contender],
@@ -159,7 +165,7 @@ fn time(
         }
         progress("timing", frame + 1, session.frames());
     }
-    warm_up(session, contenders, warmup)?;
+    repeat(session, contenders, warmup)?;
     for frame in 0..session.frames() {
         for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
             records.staged.push(contender.staged(session, frame)?);
@@ -185,7 +191,7 @@ fn measure(
     followers: Followers<'_>,
 ) -> Result<()> {
     let Followers { pairs, progress, watch } = followers;
-    warm_up(session, contenders, options.warmup)?;
+    repeat(session, contenders, options.warmup)?;
     for frame in 0..session.frames() {
         let truth = truth.frame(session, frame)?;
         let mut pictures = Vec::new();
@@ -253,6 +259,7 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         boxes_mean: mean(&records.counted(|work| work.boxes)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),
         device_memory_mib: shared_mib + contender.memory_mib,
+        choices: contender.method.choices(),
         frames: frames(frame_ms, records),
         ..results::Method::default()
     };

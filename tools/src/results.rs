@@ -157,6 +157,9 @@ pub struct Method {
     pub device_memory_mib: f64,
     /// The measures of each frame.
     pub frames: Frames,
+    /// What the method decided in each frame, warm-up included, and why; empty for methods that decide nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<String>,
 }
 
 /// The spread of a method's frame times.

@@ -129,7 +129,11 @@ impl Contender {
         self.method.frame(&mut f, &session.world, view, &target)?;
         // Some methods make resources when they first see the target's size.
         self.memory_mib += session.gpu.memory_mib() - before;
-        f.finish().with_context(|| format!("method '{}', frame {}", self.label(), view.frame))
+        let report = f.finish().with_context(|| format!("method '{}', frame {}", self.label(), view.frame))?;
+        if watched == Watched::Nothing {
+            self.method.measured(report.frame_ms);
+        }
+        Ok(report)
     }
 }
 

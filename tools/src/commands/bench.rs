@@ -69,6 +69,7 @@ fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
         for method in &results.methods {
             say(&stages_table(results, method))?;
             say(&parts_table(method))?;
+            method.choices.iter().try_for_each(|choice| say(choice))?;
         }
     }
     let report = if arguments.no_report { "" } else { ", report.html" };

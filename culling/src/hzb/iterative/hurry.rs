@@ -28,8 +28,19 @@ impl Hurry {
 
     /// Ranges of the next frame, 1 to [`MOST_STEP_RANGES`]. Call once a frame.
     pub fn ranges(&mut self, view: &View) -> u32 {
-        let new = self.last.replace(*view).map_or(1.0, |last| new_share(&last, view, self.extent));
+        let new = self.new_share(view);
+        self.look(view);
         self.fixed.unwrap_or_else(|| ranges_for(new))
+    }
+
+    /// How much of the picture a view shows anew, roughly, 0 to 1; all of it in the first frame.
+    pub fn new_share(&self, view: &View) -> f64 {
+        self.last.as_ref().map_or(1.0, |last| new_share(last, view, self.extent))
+    }
+
+    /// Notes a frame's view.
+    pub fn look(&mut self, view: &View) {
+        self.last = Some(*view);
     }
 
     /// The next frame is the first.
