@@ -163,7 +163,7 @@ impl Stage for ReduceDepth {
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 16,
-        constants: &[ConstantInfo { name: "STANDARD_DEPTH", id: 8 }],
+        constants: &[ConstantInfo { name: "FINEST_LEVEL", id: 7 }, ConstantInfo { name: "STANDARD_DEPTH", id: 8 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -178,7 +178,7 @@ impl Stage for ReduceDepth {
             Self::INFO,
             vec![self.depth.into(), self.levels.into(), self.pyramid.into()],
             bytemuck::bytes_of(&push),
-            vec![u32::from(self.constants.standard_depth)],
+            vec![self.constants.finest_level, u32::from(self.constants.standard_depth)],
         )
     }
 }
@@ -201,6 +201,8 @@ const _: () = {
 /// Specialization constants of [`ReduceDepth`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReduceDepthConstants {
+    /// `FINEST_LEVEL` in GLSL.
+    pub finest_level: u32,
     /// The buffer keeps standard depth, 0 near: only where depth formats are studied.
     pub standard_depth: bool,
 }
@@ -208,7 +210,7 @@ pub struct ReduceDepthConstants {
 impl Default for ReduceDepthConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { standard_depth: false }
+        Self { finest_level: 1, standard_depth: false }
     }
 }
 
@@ -223,6 +225,8 @@ pub struct ReduceLevels {
     pub source_level: u32,
     /// `tiles` in GLSL.
     pub tiles: [u32; 2],
+    /// Specialization constants.
+    pub constants: ReduceLevelsConstants,
 }
 
 impl Stage for ReduceLevels {
@@ -237,7 +241,7 @@ impl Stage for ReduceLevels {
             BindingInfo { name: "pyramid", binding: 1, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
         ],
         push_size: 12,
-        constants: &[],
+        constants: &[ConstantInfo { name: "FINEST_LEVEL", id: 7 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -248,7 +252,12 @@ impl Stage for ReduceLevels {
 
     fn bind(&self) -> BoundStage {
         let push = ReduceLevelsPush { source_level: self.source_level, tiles: self.tiles };
-        BoundStage::new(Self::INFO, vec![self.levels.into(), self.pyramid.into()], bytemuck::bytes_of(&push), vec![])
+        BoundStage::new(
+            Self::INFO,
+            vec![self.levels.into(), self.pyramid.into()],
+            bytemuck::bytes_of(&push),
+            vec![self.constants.finest_level],
+        )
     }
 }
 
@@ -266,6 +275,20 @@ const _: () = {
     assert!(std::mem::offset_of!(ReduceLevelsPush, tiles) == 4);
     assert!(size_of::<ReduceLevelsPush>() == 12);
 };
+
+/// Specialization constants of [`ReduceLevels`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReduceLevelsConstants {
+    /// `FINEST_LEVEL` in GLSL.
+    pub finest_level: u32,
+}
+
+impl Default for ReduceLevelsConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { finest_level: 1 }
+    }
+}
 
 /// Where do the commands of each listed block begin, and how many are there? One subgroup walks one kind of primitive
 /// after the other, as pack/scan_counts does. Where there are none, the pyramid need not be reduced again. (hzb-iterative.) Twin: culling/src/hzb/iterative/twin.rs.
@@ -408,7 +431,11 @@ impl Stage for TestBlocks {
             BindingInfo { name: "due", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 4,
-        constants: &[ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 }, ConstantInfo { name: "BEHIND", id: 1 }],
+        constants: &[
+            ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
+            ConstantInfo { name: "BEHIND", id: 1 },
+            ConstantInfo { name: "FINEST_LEVEL", id: 7 },
+        ],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -431,7 +458,7 @@ impl Stage for TestBlocks {
                 self.due.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![self.constants.footprint_texels, u32::from(self.constants.behind)],
+            vec![self.constants.footprint_texels, u32::from(self.constants.behind), self.constants.finest_level],
         )
     }
 }
@@ -456,12 +483,14 @@ pub struct TestBlocksConstants {
     pub footprint_texels: u32,
     /// Something was drawn before: there is a pyramid of this frame.
     pub behind: bool,
+    /// `FINEST_LEVEL` in GLSL.
+    pub finest_level: u32,
 }
 
 impl Default for TestBlocksConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true }
+        Self { footprint_texels: 4, behind: true, finest_level: 1 }
     }
 }
 
@@ -507,7 +536,7 @@ impl Stage for TestBounds {
             BindingInfo { name: "seen", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 112,
-        constants: &[ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 }],
+        constants: &[ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 }, ConstantInfo { name: "FINEST_LEVEL", id: 7 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -531,7 +560,7 @@ impl Stage for TestBounds {
                 self.seen.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![self.constants.footprint_texels],
+            vec![self.constants.footprint_texels, self.constants.finest_level],
         )
     }
 }
@@ -558,12 +587,14 @@ const _: () = {
 pub struct TestBoundsConstants {
     /// How many texels a footprint may touch in each direction before a coarser level is taken: more is tighter and slower.
     pub footprint_texels: u32,
+    /// `FINEST_LEVEL` in GLSL.
+    pub finest_level: u32,
 }
 
 impl Default for TestBoundsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4 }
+        Self { footprint_texels: 4, finest_level: 1 }
     }
 }
 
@@ -672,6 +703,7 @@ impl Stage for TestObjects {
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
             ConstantInfo { name: "BOXES", id: 2 },
+            ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -697,7 +729,12 @@ impl Stage for TestObjects {
                 self.counts.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![self.constants.footprint_texels, u32::from(self.constants.behind), u32::from(self.constants.boxes)],
+            vec![
+                self.constants.footprint_texels,
+                u32::from(self.constants.behind),
+                u32::from(self.constants.boxes),
+                self.constants.finest_level,
+            ],
         )
     }
 }
@@ -724,12 +761,14 @@ pub struct TestObjectsConstants {
     pub behind: bool,
     /// What the last frame did not see must show by its box as well.
     pub boxes: bool,
+    /// `FINEST_LEVEL` in GLSL.
+    pub finest_level: u32,
 }
 
 impl Default for TestObjectsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, boxes: true }
+        Self { footprint_texels: 4, behind: true, boxes: true, finest_level: 1 }
     }
 }
 

@@ -9,9 +9,9 @@ harness::skipping_method_tests!("hzb-iterative");
 /// Settings unlike the default; they take turns at the worlds.
 const SETTINGS: [&[(&str, &str)]; 6] = [
     &[("ranges", "1")],
-    &[("ranges", "2"), ("boxes", "false")],
+    &[("ranges", "2"), ("boxes", "false"), ("finest", "2")],
     &[("ranges", "3"), ("factor", "16"), ("small", "0")],
-    &[("ranges", "5"), ("every", "1")],
+    &[("ranges", "5"), ("every", "1"), ("finest", "1")],
     &[("ranges", "5"), ("small", "0"), ("texels", "2")],
     &[("ranges", "1"), ("small", "0"), ("every", "64")],
 ];

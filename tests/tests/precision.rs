@@ -64,7 +64,8 @@ fn rows(lab: &mut Lab, shots: &[Shot]) -> Vec<Row> {
                 truth.images().depth.iter().map(|depth| (format.stored)(f64::from(*depth))).collect();
             // Level 0 is the depth itself; the layout's levels begin behind it.
             let texels = pyramid(&stored, lab.size, &levels);
-            let test = PyramidTest { levels: &levels, texels: &texels, coarsest_level, footprint_texels: 4 };
+            let test =
+                PyramidTest { levels: &levels, texels: &texels, coarsest_level, footprint_texels: 4, finest_level: 1 };
             for (object, bound) in bounds.iter().enumerate() {
                 let clip = clip_from_bounds(bound, &view);
                 let print = footprint_of(&clip, &view, bound.flags);

@@ -129,7 +129,13 @@ impl FarthestMap {
         for source_level in (0..self.shape.mip_levels).step_by(REDUCED_LEVELS as usize) {
             let last_level = source_level + REDUCED_LEVELS;
             let tiles = self.base_size().map(|side| side.div_ceil(1 << last_level));
-            let reduce = hzb::ReduceLevels { levels: self.levels.all(), pyramid: texels, source_level, tiles };
+            let reduce = hzb::ReduceLevels {
+                levels: self.levels.all(),
+                pyramid: texels,
+                source_level,
+                tiles,
+                constants: Default::default(),
+            };
             f.dispatch(reduce, tiles[0] * tiles[1]);
         }
         let mut source = self.layout[self.shape.mip_levels as usize];

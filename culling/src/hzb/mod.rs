@@ -59,7 +59,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
 
 impl Method for Hzb {
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
-        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size)?;
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1)?;
         let still = self.still.holds(world, view);
         world.update(f);
         f.clear(target);
@@ -93,7 +93,10 @@ impl Method for Hzb {
                 view: view.cull(),
                 object_count: world.len() as u32,
                 coarsest_level: pyramid.coarsest_level(),
-                constants: hzb::TestBoundsConstants { footprint_texels: self.texels },
+                constants: hzb::TestBoundsConstants {
+                    footprint_texels: self.texels,
+                    finest_level: pyramid.finest_level(),
+                },
             };
             f.dispatch_indirect(test, blocks); // 4. test all objects that may be in view
             self.seen.swap(0, 1);

@@ -13,6 +13,7 @@ pub struct Pyramid {
     levels: Buffer<PyramidLevel>,
     texels: Buffer<f32>,
     coarsest: u32,
+    finest: u32,
 }
 
 /// Where each level of a pyramid lies, by level (level 0, the depth buffer itself, is empty), and its coarsest level.
@@ -41,15 +42,26 @@ impl Pyramid {
             texels: Buffer::new(gpu, "pyramid.texels", texels as usize, Placement::Storage)?,
             layout,
             coarsest,
+            finest: 1,
         })
     }
 
-    /// The pyramid in `slot` if it has the size asked for, otherwise a new one.
-    pub fn sized<'a>(slot: &'a mut Option<Pyramid>, gpu: &Gpu, size: [u32; 2]) -> Result<&'a Pyramid> {
+    /// The same without levels finer than `level`, 1 to 3: less to write, coarser tests.
+    pub fn from_level(self, level: u32) -> Self {
+        Pyramid { finest: level.clamp(1, REDUCED_LEVELS), ..self }
+    }
+
+    /// The finest level that is kept.
+    pub fn finest_level(&self) -> u32 {
+        self.finest
+    }
+
+    /// The pyramid in `slot` if it has the size asked for, otherwise a new one, kept from level `finest` on.
+    pub fn sized<'a>(slot: &'a mut Option<Pyramid>, gpu: &Gpu, size: [u32; 2], finest: u32) -> Result<&'a Pyramid> {
         let fitting = slot.take().filter(|pyramid| pyramid.size == size);
         Ok(slot.insert(match fitting {
             Some(pyramid) => pyramid,
-            None => Pyramid::new(gpu, size)?,
+            None => Pyramid::new(gpu, size)?.from_level(finest),
         }))
     }
 
@@ -99,13 +111,14 @@ impl Pyramid {
             pyramid: self.texels.all(),
             size_px: self.size,
             tiles: self.tiles_at(REDUCED_LEVELS),
-            constants: hzb::ReduceDepthConstants { standard_depth: self.standard_depth },
+            constants: hzb::ReduceDepthConstants { standard_depth: self.standard_depth, finest_level: self.finest },
         }
     }
 
     fn next(&self, source_level: u32) -> hzb::ReduceLevels {
         let tiles = self.tiles_at(source_level + REDUCED_LEVELS);
-        hzb::ReduceLevels { levels: self.levels.all(), pyramid: self.texels.all(), source_level, tiles }
+        let constants = hzb::ReduceLevelsConstants { finest_level: self.finest };
+        hzb::ReduceLevels { levels: self.levels.all(), pyramid: self.texels.all(), source_level, tiles, constants }
     }
 
     /// Notes that the pyramid is not needed.

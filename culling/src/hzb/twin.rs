@@ -112,12 +112,14 @@ pub struct PyramidTest<'a> {
     pub coarsest_level: u32,
     /// Texels that a footprint may touch in each direction.
     pub footprint_texels: u32,
+    /// The level that tests begin at.
+    pub finest_level: u32,
 }
 
 impl PyramidTest<'_> {
     /// Twin of `hidden_by_pyramid`.
     pub fn hides(&self, footprint: &Footprint) -> bool {
-        let mut level = 1;
+        let mut level = self.finest_level;
         let wide = |level: u32| {
             (0..2)
                 .any(|axis| (footprint.last[axis] >> level) - (footprint.first[axis] >> level) >= self.footprint_texels)

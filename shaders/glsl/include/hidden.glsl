@@ -1,10 +1,11 @@
 // What the farthest-depth pyramid hides. The stage declares `pyramid`, `levels` and FOOTPRINT_TEXELS before it includes this.
 #ifndef HIDDEN_GLSL
 #define HIDDEN_GLSL
+#include "finest.glsl"
 
 // True if every texel that the footprint touches is nearer than the box can be.
 bool hidden_by_pyramid(Footprint footprint, uint coarsest_level) {
-    uint level = 1u;
+    uint level = FINEST_LEVEL;
     while (level < coarsest_level
         && any(greaterThanEqual((footprint.last >> level) - (footprint.first >> level), uvec2(FOOTPRINT_TEXELS)))) level++;
     PyramidLevel texels = levels.items[level];

@@ -4,10 +4,11 @@
 #ifndef REDUCE_GLSL
 #define REDUCE_GLSL
 #include "pyramid.glsl"
+#include "finest.glsl"
 
 void store(uint level, uvec2 texel, float farthest) {
     PyramidLevel target = levels.items[level];
-    if (texel.x < target.width && texel.y < target.height)
+    if (level >= FINEST_LEVEL && texel.x < target.width && texel.y < target.height)
         pyramid.items[target.first + texel.y * target.width + texel.x] = farthest;
 }
 

@@ -79,7 +79,10 @@ fn each_reduction_equals_its_twin_on_random_depths() {
         for source_level in (3..coarsest).step_by(3) {
             let PyramidLevel { width, height, .. } = layout[source_level as usize + 3];
             let (levels, pyramid, tiles) = (places.all(), buffer.all(), [width, height]);
-            f.dispatch(shaders::hzb::ReduceLevels { levels, pyramid, source_level, tiles }, width * height);
+            f.dispatch(
+                shaders::hzb::ReduceLevels { levels, pyramid, source_level, tiles, constants: Default::default() },
+                width * height,
+            );
         }
         f.finish().unwrap();
         assert_eq!(buffer.read().unwrap(), texels, "{size:?}");

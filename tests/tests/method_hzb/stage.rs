@@ -45,7 +45,7 @@ fn run(gpu: &Gpu, input: &Input) -> [Vec<u32>; 2] {
         view: input.occludees.view,
         object_count: BOXES as u32,
         coarsest_level,
-        constants: shaders::hzb::TestBoundsConstants { footprint_texels: input.texels },
+        constants: shaders::hzb::TestBoundsConstants { footprint_texels: input.texels, finest_level: 1 },
     };
     let mut f = gpu.frame();
     f.dispatch_indirect(stage, blocks.all());
@@ -58,7 +58,13 @@ fn shifted(input: &Input, step: f32) -> Vec<u32> {
     let (levels, coarsest_level) = culling::hzb::layout(SIZE);
     let Occludees { bounds, depth, view, .. } = input.occludees.shifted(step);
     let texels = twin::pyramid(&depth, SIZE, &levels);
-    let test = PyramidTest { levels: &levels, texels: &texels, coarsest_level, footprint_texels: input.texels };
+    let test = PyramidTest {
+        levels: &levels,
+        texels: &texels,
+        coarsest_level,
+        footprint_texels: input.texels,
+        finest_level: 1,
+    };
     bounds.iter().map(|bounds| u32::from(twin::is_visible(bounds, &view, &test))).collect()
 }
 

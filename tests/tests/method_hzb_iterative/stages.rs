@@ -30,6 +30,7 @@ struct Input {
     all: StepView,
     levels: Vec<PyramidLevel>,
     texels: Vec<f32>,
+    finest: u32,
 }
 
 impl Input {
@@ -49,12 +50,24 @@ impl Input {
             second_kind: 2_000,
             third_kind: 3_001,
         };
-        Input { texels: pyramid(&occludees.depth, SIZE, &levels), bounds: occludees.bounds, all, levels }
+        Input {
+            texels: pyramid(&occludees.depth, SIZE, &levels),
+            bounds: occludees.bounds,
+            all,
+            levels,
+            finest: 1 + random.below(3) as u32,
+        }
     }
 
     fn test(&self) -> PyramidTest<'_> {
         let coarsest_level = self.all.coarsest_level;
-        PyramidTest { levels: &self.levels, texels: &self.texels, coarsest_level, footprint_texels: 4 }
+        PyramidTest {
+            levels: &self.levels,
+            texels: &self.texels,
+            coarsest_level,
+            footprint_texels: 4,
+            finest_level: self.finest,
+        }
     }
 }
 
@@ -107,7 +120,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
                 pyramid: texels.all(),
                 due: due.all(),
                 step,
-                constants: hzb::TestBlocksConstants { footprint_texels: 4, behind },
+                constants: hzb::TestBlocksConstants { footprint_texels: 4, behind, finest_level: input.finest },
             };
             f.dispatch(test, BOXES as u32);
             f.finish().unwrap();
@@ -273,7 +286,7 @@ fn run(
         shown: shown.all(),
         counts: counts.all(),
         step,
-        constants: hzb::TestObjectsConstants { footprint_texels: 4, behind, boxes: true },
+        constants: hzb::TestObjectsConstants { footprint_texels: 4, behind, boxes: true, finest_level: input.finest },
     };
     f.dispatch_indirect(test, list.all());
     let scan = hzb::ScanBlocks {

@@ -5,7 +5,10 @@ use glam::DVec3;
 use shaders::types::MOST_STEP_RANGES;
 
 /// How much of the picture may be new before one more range pays, by number of ranges. Measured: see culling/README.md.
-const NEW_SHARE: [f64; MOST_STEP_RANGES as usize - 1] = [0.04, 0.12, 0.3, 0.6];
+const NEW_SHARE: [f64; 3] = [0.1, 0.3, 0.99];
+
+/// How much of the picture must be new for what was seen before to be worth nothing.
+const CUT_SHARE: f64 = 0.99;
 
 /// Follows the camera and chooses numbers of ranges.
 #[derive(Clone, Debug)]
@@ -31,6 +34,11 @@ impl Hurry {
         let new = self.new_share(view);
         self.look(view);
         self.fixed.unwrap_or_else(|| ranges_for(new))
+    }
+
+    /// True if next to nothing of the last frame is to be seen in this view; of a first frame too.
+    pub fn is_cut(&self, view: &View) -> bool {
+        self.new_share(view) > CUT_SHARE
     }
 
     /// How much of the picture a view shows anew, roughly, 0 to 1; all of it in the first frame.

@@ -36,7 +36,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "factor",
-        default: "2",
+        default: "4",
         values: "2..=16",
         help: "how many times farther than the range before it each range reaches",
     },
@@ -48,9 +48,15 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "small",
-        default: "16",
+        default: "6",
         values: "0..=1000000",
-        help: "objects of no more triangles are drawn without a test of their box",
+        help: "objects of no more triangles (6: as many as a box shows) are drawn without a test of their box",
+    },
+    OptionInfo {
+        name: "finest",
+        default: "3",
+        values: "1..=3",
+        help: "finest level of the pyramid: a texel is 2, 4 or 8 pixels a side",
     },
     OptionInfo {
         name: "every",
@@ -79,6 +85,7 @@ struct Iterative {
     steps: Steps,
     pyramid: Option<Pyramid>,
     hurry: Hurry,
+    finest: u32,
     every: u32,
     /// Frames until what was seen is looked at again.
     until_flags: u32,
@@ -102,6 +109,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         steps: Steps::new(gpu, world, options)?,
         pyramid: None,
         hurry: Hurry::new(options.text("ranges").parse().ok(), world),
+        finest: options.number("finest"),
         every: options.number("every"),
         until_flags: 0,
         ranges: 1,
@@ -120,7 +128,9 @@ impl Method for Iterative {
         if self.still.holds(world, view) {
             return self.same_again(f, world, view, target);
         }
-        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size)?;
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, self.finest)?;
+        // What was seen before a cut is no better than the rest.
+        self.afresh |= self.hurry.is_cut(view);
         self.ranges = self.hurry.ranges(view);
         self.first_step = if self.afresh { 1 } else { 0 };
         // While nothing changes always: then how long that lasts does not show in what follows.
@@ -130,6 +140,9 @@ impl Method for Iterative {
         let (before, now) = (&self.visible[1 - self.now], &self.visible[self.now]);
         self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
 
+        if self.afresh {
+            f.fill("hzb/clear_seen", before, 0);
+        }
         if flags {
             f.fill("hzb/clear_visible", now, 0);
         } else {

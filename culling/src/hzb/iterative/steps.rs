@@ -127,6 +127,7 @@ impl Steps {
         }
         let (farthest, views, blocks) = (self.farthest.all(), self.view.all(), self.blocks.all());
         let (levels, texels, block_count) = (pyramid.levels(), pyramid.texels(), world.block_count());
+        let finest_level = pyramid.finest_level();
         let (footprint_texels, behind, number) = (self.texels, step.behind, step.number);
         let test = hzb::TestBlocks {
             bounds: world.block_bounds(),
@@ -137,7 +138,7 @@ impl Steps {
             pyramid: texels,
             due: self.due.all(),
             step: number,
-            constants: hzb::TestBlocksConstants { footprint_texels, behind },
+            constants: hzb::TestBlocksConstants { footprint_texels, behind, finest_level },
         };
         f.dispatch(test, block_count);
         let subgroup_size = self.subgroup_size;
@@ -158,7 +159,7 @@ impl Steps {
             shown: self.shown.all(),
             counts,
             step: number,
-            constants: hzb::TestObjectsConstants { footprint_texels, behind, boxes: self.tests_boxes },
+            constants: hzb::TestObjectsConstants { footprint_texels, behind, boxes: self.tests_boxes, finest_level },
         };
         f.dispatch_indirect(test, blocks);
         let (starts, totals) = (self.starts.all(), self.totals[number as usize].all());
