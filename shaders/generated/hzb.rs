@@ -83,7 +83,8 @@ impl Default for ListBlocksConstants {
     }
 }
 
-/// Which blocks of objects are in view, where does each begin and end along it, and where does the farthest begin?
+/// Which blocks of objects are in view, where does each begin and end along it, and where do the nearest and the
+/// farthest begin?
 /// (hzb-iterative, step 1.) Twin: culling/src/hzb/iterative/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasureBlocks {
@@ -91,8 +92,8 @@ pub struct MeasureBlocks {
     pub bounds: BufferRef<types::Bounds>,
     /// `spans` in GLSL.
     pub spans: BufferRef<types::BlockSpan>,
-    /// The bits of the largest begin: floats from 0 on have the order of their bits. Must be 0 before.
-    pub farthest: BufferRef<u32>,
+    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
+    pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,
 }
@@ -107,7 +108,7 @@ impl Stage for MeasureBlocks {
         bindings: &[
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "spans", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
-            BindingInfo { name: "farthest", binding: 2, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "reach", binding: 2, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
             BindingInfo { name: "views", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 0,
@@ -123,7 +124,7 @@ impl Stage for MeasureBlocks {
     fn bind(&self) -> BoundStage {
         BoundStage::new(
             Self::INFO,
-            vec![self.bounds.into(), self.spans.into(), self.farthest.into(), self.views.into()],
+            vec![self.bounds.into(), self.spans.into(), self.reach.into(), self.views.into()],
             &[],
             vec![],
         )
@@ -401,8 +402,8 @@ pub struct TestBlocks {
     pub bounds: BufferRef<types::Bounds>,
     /// `spans` in GLSL.
     pub spans: BufferRef<types::BlockSpan>,
-    /// `farthest` in GLSL.
-    pub farthest: BufferRef<u32>,
+    /// `reach` in GLSL.
+    pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,
     /// `levels` in GLSL.
@@ -424,7 +425,7 @@ impl Stage for TestBlocks {
         bindings: &[
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "spans", binding: 1, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
-            BindingInfo { name: "farthest", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "reach", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "levels", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
@@ -451,7 +452,7 @@ impl Stage for TestBlocks {
             vec![
                 self.bounds.into(),
                 self.spans.into(),
-                self.farthest.into(),
+                self.reach.into(),
                 self.views.into(),
                 self.levels.into(),
                 self.pyramid.into(),
@@ -660,8 +661,8 @@ pub struct TestObjects {
     pub bounds: BufferRef<types::Bounds>,
     /// What the last frame saw.
     pub seen: BufferRef<u32>,
-    /// `farthest` in GLSL.
-    pub farthest: BufferRef<u32>,
+    /// `reach` in GLSL.
+    pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,
     /// `levels` in GLSL.
@@ -690,7 +691,7 @@ impl Stage for TestObjects {
         bindings: &[
             BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "seen", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "farthest", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "reach", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "levels", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
@@ -720,7 +721,7 @@ impl Stage for TestObjects {
             vec![
                 self.bounds.into(),
                 self.seen.into(),
-                self.farthest.into(),
+                self.reach.into(),
                 self.views.into(),
                 self.levels.into(),
                 self.pyramid.into(),

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod drawn;
+mod order;
 mod still;
 mod ties;
 pub mod twin;
@@ -36,7 +37,8 @@ pub struct Range {
     pub primitives: Primitives,
 }
 
-/// A scene on the GPU. Objects keep the scene's order, except that triangles come before lines and lines before points.
+/// A scene on the GPU. Triangles come before lines and lines before points, what moves after what stays; beyond that objects keep the
+/// scene's order, unless that puts far from each other what lies near each other: then they lie along a curve through space.
 pub struct World {
     vertices: Buffer<ObjectsVertex>,
     indices: Buffer<u32>,
@@ -58,7 +60,8 @@ struct Host {
     bounds: WorldBounds,
     boxes: Vec<scenes::Aabb>,
     object_meshes: Vec<u32>,
-    mesh_indices: Vec<u32>,
+    meshes: Vec<MeshRange>,
+    indices: Vec<u32>,
     static_objects: Vec<Object>,
     flags: Vec<u32>,
     transforms: Vec<(u32, DAffine3)>,
@@ -101,7 +104,8 @@ impl World {
                 bounds: flat.world_bounds,
                 boxes: flat.boxes,
                 object_meshes: flat.object_meshes,
-                mesh_indices: flat.meshes.iter().map(|mesh| mesh.index_count).collect(),
+                meshes: flat.meshes,
+                indices: flat.indices,
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
                 static_objects: if moving == 0 { Vec::new() } else { flat.objects },
                 transforms,
@@ -135,7 +139,7 @@ impl World {
 
     /// Indices of an object's mesh: three a triangle, two a line, one a point.
     pub fn index_count(&self, object: u32) -> u32 {
-        self.host.mesh_indices[self.host.object_meshes[object as usize] as usize]
+        self.host.meshes[self.host.object_meshes[object as usize] as usize].index_count
     }
 
     /// The scene's object behind each of the world's, which differ where lines and points are mixed in.

@@ -9,7 +9,7 @@
 use crate::pack::DrawList;
 use crate::world::{View, World};
 use crate::Result;
-use engine::{Buffer, Frame, Gpu, Placement, Primitives, Target};
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
 use shaders::types::MeshRange;
 use shaders::BufferRef;
 
@@ -21,8 +21,8 @@ pub struct LastToFirst {
 impl LastToFirst {
     /// Turns the primitives of every mesh round.
     pub fn new(gpu: &Gpu, world: &World) -> Result<Self> {
-        let mut indices = world.indices.read()?;
-        let meshes = world.meshes.read()?;
+        let mut indices = world.host.indices.clone();
+        let meshes = &world.host.meshes;
         let mut turned = vec![false; meshes.len()];
         for range in world.ranges() {
             let objects = range.first as usize..(range.first + range.count) as usize;
@@ -35,6 +35,13 @@ impl LastToFirst {
         Ok(LastToFirst {
             indices: Buffer::with_data(gpu, "world.indices_last_to_first", &indices, Placement::Geometry)?,
         })
+    }
+}
+
+impl LastToFirst {
+    /// A draw with each mesh's primitives last to first.
+    pub(crate) fn turned(&self, draw: IndexedIndirect) -> IndexedIndirect {
+        IndexedIndirect { indices: self.indices.all().into(), ..draw }
     }
 }
 
@@ -64,7 +71,7 @@ impl World {
     ) {
         let target = target.keeping_ties();
         for draw in list.draws(self) {
-            let draw = engine::IndexedIndirect { indices: order.indices.all().into(), ..draw };
+            let draw = order.turned(draw);
             match visible {
                 Some(visible) => self.draw_indirect_flagged(f, draw, visible, view, &target),
                 None => self.draw_indirect(f, draw, view, &target),

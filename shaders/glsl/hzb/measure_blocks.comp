@@ -1,4 +1,5 @@
-// hzb/measure_blocks: which blocks of objects are in view, where does each begin and end along it, and where does the farthest begin?
+// hzb/measure_blocks: which blocks of objects are in view, where does each begin and end along it, and where do the nearest and the
+// farthest begin?
 // (hzb-iterative, step 1.) Twin: culling/src/hzb/iterative/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,8 +10,8 @@
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) writeonly buffer Spans { BlockSpan items[]; } spans;
-// The bits of the largest begin: floats from 0 on have the order of their bits. Must be 0 before.
-layout(set = 0, binding = 2, scalar) buffer Farthest { uint items[]; } farthest;
+// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
+layout(set = 0, binding = 2, scalar) buffer Reach { uint items[]; } reach;
 layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
 
 // What the depths of a block and of an object in it may differ by, both rounded: each is a sum of five products and four sums of parts
@@ -35,6 +36,7 @@ void main() {
     }
     spans.items[block] = span;
     uint begin = floatBitsToUint(span.begin);
-    // The look before the atomic may be out of date, but never too large.
-    if (span.begin <= span.end && begin > farthest.items[0]) atomicMax(farthest.items[0], begin);
+    // The looks before the atomics may be out of date, but never too large.
+    if (span.begin <= span.end && begin > reach.items[0]) atomicMax(reach.items[0], begin);
+    if (span.begin <= span.end && ~begin > reach.items[1]) atomicMax(reach.items[1], ~begin);
 }

@@ -14,7 +14,7 @@ layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 layout(constant_id = 1) const bool BEHIND = true;
 layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) buffer Spans { BlockSpan items[]; } spans;
-layout(set = 0, binding = 2, scalar) readonly buffer Farthest { uint items[]; } farthest;
+layout(set = 0, binding = 2, scalar) readonly buffer Reach { uint items[]; } reach;
 layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
 layout(set = 0, binding = 4, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 5, scalar) readonly buffer Pyramid { float items[]; } pyramid;
@@ -28,9 +28,10 @@ void main() {
     StepView all = views.items[0];
     if (block >= all.block_count) return;
     BlockSpan span = spans.items[block];
-    float outermost = uintBitsToFloat(farthest.items[0]);
-    bool is_due = span.begin <= span.end && push.step >= range_of(span.begin, outermost, all.range_count, all.share)
-        && push.step <= range_of(span.end, outermost, all.range_count, all.share) + 1u;
+    float nearest = nearest_begin(reach.items[1]);
+    float outermost = uintBitsToFloat(reach.items[0]) - nearest;
+    bool is_due = span.begin <= span.end && push.step >= range_of(span.begin - nearest, outermost, all.range_count, all.share)
+        && push.step <= range_of(span.end - nearest, outermost, all.range_count, all.share) + 1u;
     if (BEHIND && is_due && !is_visible(bounds.items[block], all.view, all.coarsest_level)) {
         is_due = false;
         spans.items[block] = BlockSpan(1.0, 0.0);

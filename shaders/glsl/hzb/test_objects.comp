@@ -16,7 +16,7 @@ layout(constant_id = 2) const bool BOXES = true;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
 // What the last frame saw.
 layout(set = 0, binding = 1, scalar) readonly buffer Seen { uint items[]; } seen;
-layout(set = 0, binding = 2, scalar) readonly buffer Farthest { uint items[]; } farthest;
+layout(set = 0, binding = 2, scalar) readonly buffer Reach { uint items[]; } reach;
 layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
 layout(set = 0, binding = 4, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 5, scalar) readonly buffer Pyramid { float items[]; } pyramid;
@@ -37,7 +37,8 @@ void main() {
     Bounds bound = bounds.items[object];
     float begin = (bound.flags & OBJECT_ALWAYS_KEPT) != 0u ? 0.0
         : begin_of_box(bound, all.depth_plane, all.view.camera_high, all.view.camera_low);
-    uint range = range_of(begin, uintBitsToFloat(farthest.items[0]), all.range_count, all.share);
+    float nearest = nearest_begin(reach.items[1]);
+    uint range = range_of(begin - nearest, uintBitsToFloat(reach.items[0]) - nearest, all.range_count, all.share);
     bool is_due = push.step == range + (seen.items[object] != 0u ? 0u : 1u);
     bool is_shown = false;
     if (is_due && BEHIND) is_shown = is_visible(bound, all.view, all.coarsest_level);

@@ -33,6 +33,12 @@ struct StepView {
     uint third_kind;
 };
 
+// Where the nearest block in view begins, from its inverted bits: ranges are counted from there, as what a view from above sees, say,
+// begins far from the eye. Differences keep the order of depths, so that an object stays in the ranges of its block.
+float nearest_begin(uint inverted) {
+    return uintBitsToFloat(~inverted);
+}
+
 // What becomes of an object in a step.
 const uint STEP_HIDDEN = 0u;    // not due, or not seen: nothing
 const uint STEP_SHOWN = 1u;     // drawn

@@ -87,22 +87,20 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
         let input = Input::by_chance(&mut random, &gpu, projection);
         let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[input.all]));
         let (levels, texels) = (stored(&gpu, &input.levels), stored(&gpu, &input.texels));
-        let (spans, farthest) = (stored(&gpu, &vec![BlockSpan::default(); BOXES]), stored(&gpu, &[0u32]));
+        let (spans, reach) = (stored(&gpu, &vec![BlockSpan::default(); BOXES]), stored(&gpu, &[0u32; 2]));
         let mut f = gpu.frame();
-        let measure = hzb::MeasureBlocks {
-            bounds: bounds.all(),
-            spans: spans.all(),
-            farthest: farthest.all(),
-            views: views.all(),
-        };
+        let measure =
+            hzb::MeasureBlocks { bounds: bounds.all(), spans: spans.all(), reach: reach.all(), views: views.all() };
         f.dispatch(measure, BOXES as u32);
         f.finish().unwrap();
         let mut measured = spans.read().unwrap();
-        let farthest_begin = f32::from_bits(farthest.read().unwrap()[0]);
-        let (twin_spans, twin_farthest) = twin::measure_blocks(&input.bounds, &input.all);
+        let found = reach.read().unwrap();
+        let found = twin::Reach { farthest: f32::from_bits(found[0]), nearest: f32::from_bits(!found[1]) };
+        let (twin_spans, twin_reach) = twin::measure_blocks(&input.bounds, &input.all);
+        let close = |one: f32, other: f32| (one - other).abs() <= 1e-4 * twin_reach.farthest;
         assert!(
-            (farthest_begin - twin_farthest).abs() <= 1e-4 * twin_farthest,
-            "{name}: {farthest_begin} {twin_farthest}"
+            close(found.farthest, twin_reach.farthest) && close(found.nearest, twin_reach.nearest),
+            "{name}: {found:?} {twin_reach:?}"
         );
         let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (a.abs() + b.abs()) + 1e-3;
         let same = |(a, b): &(&BlockSpan, &BlockSpan)| near(a.begin, b.begin) && near(a.end, b.end);
@@ -114,7 +112,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
             let test = hzb::TestBlocks {
                 bounds: bounds.all(),
                 spans: spans.all(),
-                farthest: farthest.all(),
+                reach: reach.all(),
                 views: views.all(),
                 levels: levels.all(),
                 pyramid: texels.all(),
@@ -125,8 +123,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
             f.dispatch(test, BOXES as u32);
             f.finish().unwrap();
             let pyramid = behind.then(|| input.test());
-            let twin_due =
-                twin::test_blocks(&input.bounds, &mut measured, farthest_begin, &input.all, pyramid.as_ref(), step);
+            let twin_due = twin::test_blocks(&input.bounds, &mut measured, found, &input.all, pyramid.as_ref(), step);
             let found = due.read().unwrap();
             differ += found.iter().zip(&twin_due).filter(|(a, b)| a != b).count();
             due_blocks += found.iter().sum::<u32>() as usize;
@@ -149,8 +146,8 @@ fn an_object_is_due_in_a_step_of_its_block() {
     for (name, projection) in special_projections() {
         let mut input = Input::by_chance(&mut random, &gpu, projection);
         input.all.range_count = MOST_STEP_RANGES;
-        let (spans, farthest) = twin::measure_blocks(&input.bounds, &input.all);
-        let range = |depth| culling::roc::twin::range_of(depth, farthest, input.all.range_count, input.all.share);
+        let (spans, reach) = twin::measure_blocks(&input.bounds, &input.all);
+        let range = |depth| reach.range_of(depth, &input.all);
         for (bound, span) in input.bounds.iter().zip(spans).filter(|(_, span)| span.begin <= span.end) {
             let kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
             let begin =
@@ -201,17 +198,17 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
     for (number, (name, projection)) in special_projections().into_iter().enumerate() {
         let mut input = Input::by_chance(&mut random, &gpu, projection);
         input.all.block_count = blocks as u32;
-        let farthest = twin::measure_blocks(&input.bounds, &input.all).1;
+        let reach = twin::measure_blocks(&input.bounds, &input.all).1;
         let (step, behind) = (number as u32 % 3, number % 4 != 0);
         let seen: Vec<u32> = (0..BOXES).map(|_| random.below(2) as u32).collect();
         let object_meshes: Vec<u32> = (0..BOXES).map(|_| random.below(40) as u32).collect();
         let list = twin::list_blocks(&(0..blocks).map(|_| u32::from(random.below(3) > 0)).collect::<Vec<_>>());
         let listed = &list[LISTED_HEADER as usize..];
-        let found = run(&gpu, &input, (&seen, &object_meshes, &meshes), &list, farthest, (step, behind));
+        let found = run(&gpu, &input, (&seen, &object_meshes, &meshes), &list, reach, (step, behind));
 
         let pyramid = behind.then(|| input.test());
         let twin =
-            twin::test_objects((&input.bounds, &seen), listed, farthest, &input.all, pyramid.as_ref(), (step, true));
+            twin::test_objects((&input.bounds, &seen), listed, reach, &input.all, pyramid.as_ref(), (step, true));
         // What the GPU made of each object; small meshes are drawn without a test of their box.
         let small = |object: usize| meshes[object_meshes[object] as usize].index_count <= SMALL;
         let mut becomes = vec![STEP_HIDDEN; BOXES];
@@ -261,14 +258,14 @@ fn run(
     input: &Input,
     (seen, object_meshes, meshes): (&[u32], &[u32], &[MeshRange]),
     list: &[u32],
-    farthest: f32,
+    reach: twin::Reach,
     (step, behind): (u32, bool),
 ) -> Found {
     let block_count = input.all.block_count;
     let (bounds, views, list) = (stored(gpu, &input.bounds), stored(gpu, &[input.all]), stored(gpu, list));
     let (levels, texels) = (stored(gpu, &input.levels), stored(gpu, &input.texels));
     let (seen, object_meshes, meshes) = (stored(gpu, seen), stored(gpu, object_meshes), stored(gpu, meshes));
-    let farthest = stored(gpu, &[farthest.to_bits()]);
+    let reach = stored(gpu, &[reach.farthest.to_bits(), !reach.nearest.to_bits()]);
     let (shown, totals, grids) = (words(gpu, BOXES), words(gpu, 3), words(gpu, 3));
     let (counts, starts) = (stored(gpu, &vec![0u32; 3 * block_count as usize]), words(gpu, 3 * block_count as usize));
     let (boxes, commands) =
@@ -278,7 +275,7 @@ fn run(
     let test = hzb::TestObjects {
         bounds: bounds.all(),
         seen: seen.all(),
-        farthest: farthest.all(),
+        reach: reach.all(),
         views: views.all(),
         levels: levels.all(),
         pyramid: texels.all(),

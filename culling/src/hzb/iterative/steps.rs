@@ -2,7 +2,7 @@
 
 use crate::boxes::BoxShape;
 use crate::hzb::Pyramid;
-use crate::world::{View, World};
+use crate::world::{LastToFirst, View, World};
 use crate::{Options, Result};
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Target};
 use shaders::types::{BlockSpan, DrawCommand, StepView, LISTED_GRID, LISTED_HEADER, MOST_STEP_RANGES};
@@ -24,7 +24,8 @@ pub(super) struct Step {
 pub(super) struct Steps {
     view: Buffer<StepView>,
     spans: Buffer<BlockSpan>,
-    farthest: Buffer<u32>,
+    /// Where the farthest block in view begins, and the nearest (its bits inverted).
+    reach: Buffer<u32>,
     due: Buffer<u32>,
     blocks: Buffer<u32>,
     shown: Buffer<u32>,
@@ -34,6 +35,8 @@ pub(super) struct Steps {
     totals: Vec<Buffer<u32>>,
     boxes: Buffer<DrawCommand>,
     shape: BoxShape,
+    /// What is drawn behind others leaves them what is as near: owners of pixels would take turns otherwise.
+    order: LastToFirst,
     /// Grids of the pyramid's reductions, and the same where something was drawn.
     reductions: [Buffer<u32>; 2],
     small_indices: u32,
@@ -55,7 +58,7 @@ impl Steps {
         Ok(Steps {
             view: Buffer::new(gpu, "hzb.step_view", 1, Placement::Upload)?,
             spans: Buffer::new(gpu, "hzb.spans", blocks, Placement::Storage)?,
-            farthest: words("farthest", 1)?,
+            reach: words("reach", 2)?,
             due: words("due", blocks)?,
             blocks: words("due_blocks", LISTED_HEADER as usize + blocks)?,
             shown: words("shown", world.len())?,
@@ -67,6 +70,7 @@ impl Steps {
                 .collect::<std::result::Result<_, _>>()?,
             boxes: Buffer::with_data(gpu, "hzb.boxes", &no_boxes, Placement::Storage)?,
             shape: BoxShape::new(gpu, "hzb.boxes", kinds as u32)?,
+            order: LastToFirst::new(gpu, world)?,
             reductions: [words("full_grids", 3 * MOST_REDUCTIONS)?, words("grids", 3 * MOST_REDUCTIONS)?],
             small_indices: 3 * options.number("small"),
             tests_boxes: options.flag("boxes"),
@@ -110,11 +114,11 @@ impl Steps {
 
     /// Where blocks lie along the view.
     pub fn measure(&self, f: &mut Frame, world: &World) {
-        f.fill("hzb/clear_farthest", &self.farthest, 0);
+        f.fill("hzb/clear_reach", &self.reach, 0);
         let measure = hzb::MeasureBlocks {
             bounds: world.block_bounds(),
             spans: self.spans.all(),
-            farthest: self.farthest.all(),
+            reach: self.reach.all(),
             views: self.view.all(),
         };
         f.dispatch(measure, if world.is_empty() { 0 } else { world.block_count() });
@@ -125,14 +129,14 @@ impl Steps {
         if world.is_empty() {
             return;
         }
-        let (farthest, views, blocks) = (self.farthest.all(), self.view.all(), self.blocks.all());
+        let (reach, views, blocks) = (self.reach.all(), self.view.all(), self.blocks.all());
         let (levels, texels, block_count) = (pyramid.levels(), pyramid.texels(), world.block_count());
         let finest_level = pyramid.finest_level();
         let (footprint_texels, behind, number) = (self.texels, step.behind, step.number);
         let test = hzb::TestBlocks {
             bounds: world.block_bounds(),
             spans: self.spans.all(),
-            farthest,
+            reach,
             views,
             levels,
             pyramid: texels,
@@ -151,7 +155,7 @@ impl Steps {
         let test = hzb::TestObjects {
             bounds: world.bounds(),
             seen: step.seen,
-            farthest,
+            reach,
             views,
             levels,
             pyramid: texels,
@@ -218,8 +222,28 @@ impl Steps {
         self.reductions[1].all()
     }
 
+    /// Draws what a step found; `adds` to what is seen each object of which a fragment passes the early tests.
+    pub fn draw(
+        &self,
+        f: &mut Frame,
+        world: &World,
+        step: &Step,
+        adds: Option<BufferRef<u32>>,
+        view: &View,
+        target: &Target,
+    ) {
+        let target = if step.behind { target.keeping_ties() } else { *target };
+        for draw in self.draws(world, step.number) {
+            let draw = if step.behind { self.order.turned(draw) } else { draw };
+            match adds {
+                Some(visible) => world.draw_indirect_flagged(f, draw, visible, view, &target),
+                None => world.draw_indirect(f, draw, view, &target),
+            }
+        }
+    }
+
     /// The draws of what a step found, one a kind of primitive.
-    pub fn draws<'a>(&'a self, world: &'a World, step: u32) -> impl Iterator<Item = IndexedIndirect> + 'a {
+    fn draws<'a>(&'a self, world: &'a World, step: u32) -> impl Iterator<Item = IndexedIndirect> + 'a {
         self.assert_made_for(world);
         let (commands, totals) = (&self.commands[step as usize], &self.totals[step as usize]);
         world.ranges().iter().enumerate().map(move |(kind, range)| IndexedIndirect {

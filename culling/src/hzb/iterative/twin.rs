@@ -11,8 +11,24 @@ use shaders::types::*;
 /// Out of view, or known to be hidden.
 const NOWHERE: BlockSpan = BlockSpan { begin: 1.0, end: 0.0 };
 
-/// Where each block lies along the view, and where the farthest of those in view begins. Twin of `hzb/measure_blocks`.
-pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, f32) {
+/// Where the blocks in view begin, metres along the view: ranges are cut between the nearest and the farthest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Where the nearest block begins; infinite if none is in view.
+    pub nearest: f32,
+    /// Where the farthest block begins; 0 if none is in view.
+    pub farthest: f32,
+}
+
+impl Reach {
+    /// The range of a depth.
+    pub fn range_of(&self, depth: f32, all: &StepView) -> u32 {
+        range_of(depth - self.nearest, self.farthest - self.nearest, all.range_count, all.share)
+    }
+}
+
+/// Where each block lies along the view, and where those in view begin. Twin of `hzb/measure_blocks`.
+pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, Reach) {
     let span = |block: &Bounds| {
         if block.flags & OBJECT_ALWAYS_KEPT != 0 {
             return BlockSpan { begin: 0.0, end: 3.0e38 };
@@ -29,8 +45,9 @@ pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, f32
         BlockSpan { begin: (middle - reach - slack).max(0.0), end: (middle + reach + slack).max(0.0) }
     };
     let spans: Vec<BlockSpan> = blocks.iter().map(span).collect();
-    let farthest = spans.iter().filter(|span| span.begin <= span.end).map(|span| span.begin).fold(0.0, f32::max);
-    (spans, farthest)
+    let begins = || spans.iter().filter(|span| span.begin <= span.end).map(|span| span.begin);
+    let reach = Reach { nearest: begins().fold(f32::INFINITY, f32::min), farthest: begins().fold(0.0, f32::max) };
+    (spans, reach)
 }
 
 /// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `pyramid`: of what was drawn before, if
@@ -38,12 +55,12 @@ pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, f32
 pub fn test_blocks(
     blocks: &[Bounds],
     spans: &mut [BlockSpan],
-    farthest: f32,
+    reach: Reach,
     all: &StepView,
     pyramid: Option<&PyramidTest<'_>>,
     step: u32,
 ) -> Vec<u32> {
-    let range = |depth: f32| range_of(depth, farthest, all.range_count, all.share);
+    let range = |depth: f32| reach.range_of(depth, all);
     let mut due = Vec::with_capacity(blocks.len());
     for (block, span) in blocks.iter().zip(spans) {
         let ranges = range(span.begin)..=range(span.end) + 1;
@@ -69,7 +86,7 @@ pub fn list_blocks(due: &[u32]) -> Vec<u32> {
 pub fn test_objects(
     (bounds, seen): (&[Bounds], &[u32]),
     listed: &[u32],
-    farthest: f32,
+    reach: Reach,
     all: &StepView,
     pyramid: Option<&PyramidTest<'_>>,
     (step, boxes): (u32, bool),
@@ -78,7 +95,7 @@ pub fn test_objects(
         let (bound, seen) = (&bounds[object], seen[object] != 0);
         let kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
         let begin = if kept { 0.0 } else { depth_of(bound, &all.view, all.depth_plane) };
-        if step != range_of(begin, farthest, all.range_count, all.share) + u32::from(!seen) {
+        if step != reach.range_of(begin, all) + u32::from(!seen) {
             return STEP_HIDDEN;
         }
         let shown = match pyramid {
