@@ -32,7 +32,7 @@ use objects::Objects;
 use std::path::Path;
 use tree::{node_label, Tree};
 
-/// Reads a .gltf or .glb file. Its default scene, or else its first, is taken; a file without one gives an empty scene.
+/// Reads a .gltf or .glb file, as a scene that [`Scene::check`] finds in order. Its default scene, or else its first, is taken; a file without one gives an empty scene.
 ///
 /// There is one object for each mesh primitive of each node (and instance), in order of node, then primitive; nodes that show the
 /// same mesh share it. Objects and cameras on animated nodes are placed as at time 0 and move with [`Scene::motion`].
@@ -83,6 +83,7 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let mut scene = Scene { name, meshes: objects.meshes, objects: objects.objects, cameras, ..Scene::default() };
     set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
     check_cameras(&scene.cameras)?;
+    scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;
     Ok(scene)
 }
 

@@ -88,10 +88,10 @@ pub(super) fn parse(json: &[u8]) -> Outcome<Document<'_>> {
     check_whole_numbers(json)?;
     let read = match Root::from_slice(json) {
         Ok(root) => (root, from_json(json)?),
+        // What is missing may have been filled in; any other error knows its line, which the second reading does not.
         Err(error) => mended(json).map_err(|still| {
-            // The first error knows its line, but may be of what has been mended since.
-            let same = error.to_string().starts_with(&still.to_string());
-            refusal(if same { &error } else { &still })
+            let missing = error.to_string().starts_with("missing field");
+            refusal(if missing { &still } else { &error })
         })?,
     };
     let (root, Doubles { nodes: places, cameras: lenses }) = read;
