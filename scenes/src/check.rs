@@ -16,6 +16,13 @@ impl Scene {
     /// # Errors
     /// [`SceneError::BadObject`] with the object's name, or [`SceneError::TooLarge`].
     pub fn check(&self) -> Result<(), SceneError> {
+        self.faults()?;
+        self.warn_of_bounds(&self.name);
+        Ok(())
+    }
+
+    /// As [`Scene::check`], without a word on declared bounds.
+    pub(crate) fn faults(&self) -> Result<(), SceneError> {
         self.check_sizes()?;
         let faults: Vec<Option<String>> = self.meshes.iter().map(mesh_fault).collect();
         let bounds = WorldBounds::new(self);
@@ -32,7 +39,6 @@ impl Scene {
                 return Err(SceneError::BadObject { object: object.name.clone(), fault });
             }
         }
-        self.warn_of_bounds(&self.name);
         self.check_motion()
     }
 

@@ -25,12 +25,14 @@ use crate::model::Scene;
 use accessor::Accessors;
 use document::Document;
 use fault::{broken, element, label, Fault, Outcome};
+use gltf::json::animation::Property::MorphTargetWeights;
+use gltf::json::validation::Checked::Valid;
 use motion::Moving;
 use objects::Objects;
 use std::path::Path;
 use tree::{node_label, Tree};
 
-/// Reads a .gltf or .glb file. Its default scene, or else its first, is taken; a file without one gives an empty scene.
+/// Reads a .gltf or .glb file, as a scene that [`Scene::check`] finds in order. Its default scene, or else its first, is taken; a file without one gives an empty scene.
 ///
 /// There is one object for each mesh primitive of each node (and instance), in order of node, then primitive; nodes that show the
 /// same mesh share it. Objects and cameras on animated nodes are placed as at time 0 and move with [`Scene::motion`].
@@ -56,10 +58,10 @@ pub fn import_bytes(path: &Path, file: &[u8]) -> Result<Scene, SceneError> {
 
 fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let parts = container::split(file)?;
-    let document = document::parse(parts.json)?;
+    let document = document::parse(&parts.json)?;
     let tree = Tree::new(&document)?;
     check_skins(&document, &tree)?;
-    let buffers = buffers::load(&document, parts.binary, folder)?;
+    let buffers = buffers::load(&document.root, parts.binary.as_deref(), folder)?;
     let accessors = Accessors::new(&document, &buffers);
     let moving = Moving::read(&document, &accessors, &tree)?;
 
@@ -70,8 +72,8 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     nodes.sort_unstable();
     for &node in &nodes {
         objects.add(node, &tree)?;
-        if let Some(camera) = document.nodes[node].camera {
-            let name = document.nodes[node].name.as_deref();
+        if let Some(camera) = document.root.nodes[node].camera {
+            let name = document.root.nodes[node].name.as_deref();
             let camera = cameras::read(&document, camera, name, tree.world_from_node[node]);
             cameras.push((node, camera.map_err(|fault| fault.within(|| node_label(&document, node)))?));
         }
@@ -81,6 +83,7 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let mut scene = Scene { name, meshes: objects.meshes, objects: objects.objects, cameras, ..Scene::default() };
     set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
     check_cameras(&scene.cameras)?;
+    scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;
     Ok(scene)
 }
 
@@ -125,16 +128,16 @@ fn set_in_motion(
 
 /// Holds the skins in use to the specification, though they are not drawn yet.
 fn check_skins(document: &Document, tree: &Tree) -> Outcome<()> {
-    let mut used: Vec<usize> = tree.order.iter().filter_map(|&node| document.nodes[node].skin).collect();
+    let mut used: Vec<_> = tree.order.iter().filter_map(|&node| document.root.nodes[node].skin).collect();
     used.sort_unstable();
     used.dedup();
     for index in used {
-        let skin = element(&document.skins, index, "skin")?;
-        let place = || label("skin", index, skin.name.as_deref());
+        let skin = element(&document.root, index, "skin")?;
+        let place = || label("skin", index.value(), skin.name.as_deref());
         for &joint in &skin.joints {
-            element(&document.nodes, joint, "node").map_err(|fault| fault.within(place))?;
+            element(&document.root, joint, "node").map_err(|fault| fault.within(place))?;
         }
-        let mut roots = skin.joints.iter().map(|&joint| (joint, tree.roots[joint]));
+        let mut roots = skin.joints.iter().map(|&joint| (joint, tree.roots[joint.value()]));
         let Some((first, root)) = roots.next() else {
             return broken(format!("{}: it has no joints", place()));
         };
@@ -157,12 +160,12 @@ fn check_cameras(cameras: &[Camera]) -> Outcome<()> {
 
 /// Says once what is drawn without its motion.
 fn warn_of_stills(document: &Document, scene: &str, nodes: &[usize]) {
-    let skinned = nodes.iter().filter(|&&node| document.nodes[node].skin.is_some()).count();
+    let skinned = nodes.iter().filter(|&&node| document.root.nodes[node].skin.is_some()).count();
     if skinned > 0 {
         tracing::warn!("{scene}: {skinned} skinned meshes are drawn as they lie in the file, without their skeletons");
     }
-    let channels = document.animations.iter().flat_map(|animation| &animation.channels);
-    let morphs = channels.filter(|channel| channel.target.path == "weights").count();
+    let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
+    let morphs = channels.filter(|channel| channel.target.path == Valid(MorphTargetWeights)).count();
     if morphs > 0 {
         tracing::warn!("{scene}: {morphs} animations of morph weights are not played");
     }

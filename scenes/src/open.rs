@@ -18,12 +18,14 @@ pub fn open(name_or_file: &str, options: &SceneOptions) -> Result<Scene, SceneEr
         Some(entry) => {
             check_scale(options.scale)?;
             check_detail(options.detail)?;
-            (entry.make)(options)
+            let scene = (entry.make)(options);
+            scene.faults()?;
+            scene
         }
+        // Files are found in order as they are read.
         None => open_file(name_or_file)?,
     };
     scene.repair_bounds(name_or_file);
-    scene.check()?;
     Ok(scene)
 }
 

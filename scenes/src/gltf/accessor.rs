@@ -1,13 +1,21 @@
-//! Typed reading of accessors: any component type, stride and sparse substitution (glTF 2.0, section 3.6.2).
+//! Typed reading of accessors: the `gltf` crate decodes elements of any component type and stride; here are the checks it leaves out,
+//! sparse substitution, and the numbers that quantised vectors stand for (glTF 2.0, section 3.6.2).
 //!
 //! Every offset is computed with checks and every count is held against the bytes there are before anything is allocated, so
-//! that no file, however broken, makes this panic or ask for more memory than a small multiple of its own size.
+//! that no file, however broken, makes this panic or ask for more memory than a small multiple of its own size. The crate's own
+//! `accessor::Iter` overflows at wrong offsets, counts from 0 - 1, and drops sparse values that are out of order.
 
 use super::buffers::Bytes;
-use super::document::{Accessor, Document};
+use super::document::Document;
 use super::fault::{broken, element, Fault, Outcome};
 use crate::model::Aabb;
 use glam::DVec3;
+use gltf::accessor::util::{Item, ItemIter, SparseIndicesIter};
+use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
+use gltf::json::buffer::View;
+use gltf::json::validation::Checked::Valid;
+use gltf::json::validation::USize64;
+use gltf::json::Index;
 use std::cell::Cell;
 
 /// Most elements of an accessor that has no bytes of its own, so that 30 bytes of JSON cannot ask for gigabytes.
@@ -15,59 +23,15 @@ const MOST_ZEROS: u64 = 1 << 22;
 /// Most elements read in all: bounds the memory of files that read the same bytes over and over.
 const MOST_ELEMENTS: u64 = 1 << 31;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
-}
+/// A vector of any size, where the crate has single numbers and arrays of 2, 3 and 4.
+struct Vector<C, const N: usize>([C; N]);
 
-impl Component {
-    fn from_number(number: u32) -> Outcome<Self> {
-        Ok(match number {
-            5120 => Component::I8,
-            5121 => Component::U8,
-            5122 => Component::I16,
-            5123 => Component::U16,
-            5125 => Component::U32,
-            5126 => Component::F32,
-            _ => return broken(format!("component type {number} is none of 5120 to 5123, 5125 and 5126")),
-        })
+impl<C: Item, const N: usize> Item for Vector<C, N> {
+    fn from_slice(bytes: &[u8]) -> Self {
+        Vector(std::array::from_fn(|axis| C::from_slice(&bytes[axis * size_of::<C>()..])))
     }
-
-    fn bytes(self) -> usize {
-        match self {
-            Component::I8 | Component::U8 => 1,
-            Component::I16 | Component::U16 => 2,
-            Component::U32 | Component::F32 => 4,
-        }
-    }
-
-    /// The number in the first bytes. `normalized` maps integers to -1..=1 or 0..=1 (section 3.6.2.2).
-    fn number(self, bytes: &[u8], normalized: bool) -> f32 {
-        let one = |value: f32, largest: f32| if normalized { (value / largest).max(-1.0) } else { value };
-        match (self, bytes) {
-            (Component::I8, &[a, ..]) => one(f32::from(a as i8), 127.0),
-            (Component::U8, &[a, ..]) => one(f32::from(a), 255.0),
-            (Component::I16, &[a, b, ..]) => one(f32::from(i16::from_le_bytes([a, b])), 32767.0),
-            (Component::U16, &[a, b, ..]) => one(f32::from(u16::from_le_bytes([a, b])), 65535.0),
-            (Component::F32, &[a, b, c, d, ..]) => f32::from_le_bytes([a, b, c, d]),
-            (Component::U32, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]) as f32,
-            _ => 0.0,
-        }
-    }
-
-    /// The index in the first bytes.
-    fn index(self, bytes: &[u8]) -> u32 {
-        match (self, bytes) {
-            (Component::U8, &[a, ..]) => u32::from(a),
-            (Component::U16, &[a, b, ..]) => u32::from(u16::from_le_bytes([a, b])),
-            (Component::U32, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]),
-            _ => 0,
-        }
+    fn zero() -> Self {
+        Vector(std::array::from_fn(|_| C::zero()))
     }
 }
 
@@ -84,7 +48,7 @@ pub(super) enum Allowed {
 
 /// The accessors of a file and the bytes they look at.
 pub(super) struct Accessors<'a> {
-    document: &'a Document,
+    document: &'a Document<'a>,
     buffers: &'a [Bytes<'a>],
     elements_left: Cell<u64>,
 }
@@ -94,132 +58,163 @@ impl<'a> Accessors<'a> {
         Accessors { document, buffers, elements_left: Cell::new(MOST_ELEMENTS) }
     }
 
+    fn get(&self, index: Index<Accessor>) -> Outcome<&'a Accessor> {
+        element(&self.document.root, index, "accessor")
+    }
+
     /// How many elements it has, according to the JSON.
-    pub(super) fn count(&self, index: usize) -> Outcome<u64> {
-        Ok(element(&self.document.accessors, index, "accessor")?.count)
+    pub(super) fn count(&self, index: Index<Accessor>) -> Outcome<u64> {
+        Ok(self.get(index)?.count.0)
     }
 
     /// True if there are neither bytes nor sparse values: it holds zeros only.
-    pub(super) fn is_all_zeros(&self, index: usize) -> Outcome<bool> {
-        let accessor = element(&self.document.accessors, index, "accessor")?;
+    pub(super) fn is_all_zeros(&self, index: Index<Accessor>) -> Outcome<bool> {
+        let accessor = self.get(index)?;
         Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
     /// Reads vectors of `N` numbers; `N` is 1 for SCALAR, 3 for VEC3, 4 for VEC4.
-    pub(super) fn vectors<const N: usize>(&self, index: usize, allowed: Allowed) -> Outcome<Vec<[f32; N]>> {
-        let accessor = element(&self.document.accessors, index, "accessor")?;
+    pub(super) fn vectors<const N: usize>(&self, index: Index<Accessor>, allowed: Allowed) -> Outcome<Vec<[f32; N]>> {
         let read = || {
-            let component = Component::from_number(accessor.component_type)?;
-            let fits = match (component, allowed) {
-                (Component::F32, _) => true,
-                (Component::U32, _) | (_, Allowed::Floats) => false,
-                (_, Allowed::Quantized) => true,
-                (_, Allowed::Normalized) => accessor.normalized,
+            let component = self.component(index)?;
+            let fits = match allowed {
+                Allowed::Floats => component == ComponentType::F32,
+                Allowed::Normalized => component == ComponentType::F32 || self.get(index)?.normalized,
+                Allowed::Quantized => true,
             };
-            if !fits {
-                return broken(format!("component type {} is not allowed here", accessor.component_type));
+            match component {
+                ComponentType::F32 => self.numbers::<f32, N>(index, None),
+                ComponentType::I8 if fits => self.numbers::<i8, N>(index, Some(127.0)),
+                ComponentType::U8 if fits => self.numbers::<u8, N>(index, Some(255.0)),
+                ComponentType::I16 if fits => self.numbers::<i16, N>(index, Some(32767.0)),
+                ComponentType::U16 if fits => self.numbers::<u16, N>(index, Some(65535.0)),
+                other => broken(format!("component type {} is not allowed here", other.as_gl_enum())),
             }
-            let wanted = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
-            self.elements(accessor, component, wanted, N, |bytes| {
-                std::array::from_fn(|axis| {
-                    component.number(bytes.get(axis * component.bytes()..).unwrap_or(&[]), accessor.normalized)
-                })
-            })
+        };
+        read().map_err(|fault| fault.within(|| format!("accessor {index}")))
+    }
+
+    /// Integers that are normalised stand for -1..=1 or 0..=1, `largest` for 1 (section 3.6.2.2).
+    fn numbers<C: Item + Copy + Into<f32>, const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        largest: Option<f32>,
+    ) -> Outcome<Vec<[f32; N]>> {
+        let wanted = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
+        let largest = largest.filter(|_| self.get(index).is_ok_and(|accessor| accessor.normalized));
+        let number = |component: C| match largest {
+            Some(largest) => (component.into() / largest).max(-1.0),
+            None => component.into(),
+        };
+        self.elements(index, wanted, |Vector(components): Vector<C, N>| components.map(number))
+    }
+
+    /// Reads unsigned integers.
+    pub(super) fn indices(&self, index: Index<Accessor>) -> Outcome<Vec<u32>> {
+        let read = || match self.component(index)? {
+            ComponentType::U8 => self.elements(index, Type::Scalar, |index: u8| index.into()),
+            ComponentType::U16 => self.elements(index, Type::Scalar, |index: u16| index.into()),
+            ComponentType::U32 => self.elements(index, Type::Scalar, |index: u32| index),
+            other => broken(format!(
+                "indices of component type {}; they must be unsigned (5121, 5123 or 5125)",
+                other.as_gl_enum()
+            )),
         };
         read().map_err(|fault| fault.within(|| format!("accessor {index}")))
     }
 
     /// The `min` and `max` that the JSON declares for vectors of three floats, rounded to the floats they stand for; none if
     /// there are none, or of integers, whose bounds are not in the vectors' own unit.
-    pub(super) fn declared_box(&self, index: usize) -> Outcome<Option<Aabb>> {
-        let accessor = element(&self.document.accessors, index, "accessor")?;
-        if accessor.normalized || Component::from_number(accessor.component_type)? != Component::F32 {
+    pub(super) fn declared_box(&self, index: Index<Accessor>) -> Outcome<Option<Aabb>> {
+        let accessor = self.get(index)?;
+        if accessor.normalized || self.component(index)? != ComponentType::F32 {
             return Ok(None);
         }
-        let corner = |value: &serde_json::Value| -> Option<DVec3> {
-            let parts: Vec<f64> = value.as_array()?.iter().filter_map(serde_json::Value::as_f64).collect();
+        let corner = |value: &Option<serde_json::Value>| -> Option<DVec3> {
+            let parts: Vec<f64> = value.as_ref()?.as_array()?.iter().filter_map(serde_json::Value::as_f64).collect();
             // Decimal digits are cut off by many writers: no vertex lies between a float and its digits.
             Some(DVec3::from_array(parts.try_into().ok()?).as_vec3().as_dvec3())
         };
         Ok(corner(&accessor.min).zip(corner(&accessor.max)).map(|(min, max)| Aabb { min, max }))
     }
 
-    /// Reads unsigned integers.
-    pub(super) fn indices(&self, index: usize) -> Outcome<Vec<u32>> {
-        let accessor = element(&self.document.accessors, index, "accessor")?;
-        let read = || {
-            let component = unsigned(accessor.component_type)?;
-            self.elements(accessor, component, "SCALAR", 1, |bytes| component.index(bytes))
-        };
-        read().map_err(|fault| fault.within(|| format!("accessor {index}")))
+    fn component(&self, index: Index<Accessor>) -> Outcome<ComponentType> {
+        match self.get(index)?.component_type {
+            Valid(GenericComponentType(component)) => Ok(component),
+            _ => broken(format!(
+                "component type {} is none of 5120 to 5123, 5125 and 5126",
+                self.document.said(&format!("/accessors/{index}/componentType"))
+            )),
+        }
     }
 
-    fn elements<T: Copy>(
+    fn elements<T: Item, U: Clone>(
         &self,
-        accessor: &Accessor,
-        component: Component,
-        wanted: &str,
-        width: usize,
-        decode: impl Fn(&[u8]) -> T,
-    ) -> Outcome<Vec<T>> {
-        if accessor.kind != wanted {
-            return broken(format!("its type is '{}', but {wanted} is needed here", accessor.kind));
+        index: Index<Accessor>,
+        wanted: Type,
+        convert: impl Fn(T) -> U,
+    ) -> Outcome<Vec<U>> {
+        let accessor = self.get(index)?;
+        if accessor.type_ != Valid(wanted) {
+            let kind = self.document.said(&format!("/accessors/{index}/type"));
+            return broken(format!(
+                "its type is '{kind}', but {} is needed here",
+                format!("{wanted:?}").to_uppercase()
+            ));
         }
-        let left = self.elements_left.get().checked_sub(accessor.count);
+        let count = accessor.count.0;
+        let left = self.elements_left.get().checked_sub(count);
         self.elements_left
             .set(left.ok_or_else(|| Fault::TooLarge(format!("more than {MOST_ELEMENTS} elements in all")))?);
-        let size = width * component.bytes();
-        let mut elements: Vec<T> = match accessor.buffer_view {
-            Some(view) => self.slices(view, accessor.byte_offset, accessor.count, size, true)?.map(&decode).collect(),
-            None if accessor.count > MOST_ZEROS => {
-                return Err(Fault::TooLarge(format!(
-                    "{} elements without data; the limit is {MOST_ZEROS}",
-                    accessor.count
-                )));
+        let mut elements: Vec<U> = match accessor.buffer_view {
+            Some(view) => self.items(view, accessor.byte_offset, count, true)?.map(&convert).collect(),
+            None if count > MOST_ZEROS => {
+                return Err(Fault::TooLarge(format!("{count} elements without data; the limit is {MOST_ZEROS}")));
             }
-            None => vec![decode(&[0; 16]); accessor.count as usize],
+            None => vec![convert(T::zero()); count as usize],
         };
-        if let Some(sparse) = &accessor.sparse {
-            let positions = unsigned(sparse.indices.component_type)?;
-            let at = self.slices(
-                sparse.indices.buffer_view,
-                sparse.indices.byte_offset,
-                sparse.count,
-                positions.bytes(),
-                false,
-            )?;
-            let values =
-                self.slices(sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size, false)?;
-            for (at, value) in at.zip(values) {
-                let at = positions.index(at);
-                let Some(element) = elements.get_mut(at as usize) else {
-                    return broken(format!("a sparse value is for element {at} of {}", accessor.count));
-                };
-                *element = decode(value);
+        let Some(sparse) = &accessor.sparse else { return Ok(elements) };
+        let (at, count) = (&sparse.indices, sparse.count.0);
+        let (view, offset) = (at.buffer_view, Some(at.byte_offset));
+        let at = match at.component_type {
+            Valid(kind) if kind.0 == ComponentType::U8 => {
+                SparseIndicesIter::U8(self.items(view, offset, count, false)?)
             }
+            Valid(kind) if kind.0 == ComponentType::U16 => {
+                SparseIndicesIter::U16(self.items(view, offset, count, false)?)
+            }
+            Valid(_) => SparseIndicesIter::U32(self.items(view, offset, count, false)?),
+            _ => return broken("its sparse indices must be unsigned (5121, 5123 or 5125)"),
+        };
+        let values = self.items(sparse.values.buffer_view, Some(sparse.values.byte_offset), count, false)?;
+        for (at, value) in at.zip(values) {
+            let Some(element) = elements.get_mut(at as usize) else {
+                return broken(format!("a sparse value is for element {at} of {}", accessor.count.0));
+            };
+            *element = convert(value);
         }
         Ok(elements)
     }
 
-    /// The bytes of each of `count` elements of `size` bytes in a buffer view.
-    fn slices(
+    /// `count` elements in a buffer view.
+    fn items<T: Item>(
         &self,
-        view: usize,
-        offset: u64,
+        view: Index<View>,
+        offset: Option<USize64>,
         count: u64,
-        size: usize,
         strided: bool,
-    ) -> Outcome<impl Iterator<Item = &'a [u8]>> {
+    ) -> Outcome<ItemIter<'a, T>> {
         let bytes = self.view(view).map_err(|fault| fault.within(|| format!("buffer view {view}")))?;
-        let stride = self.document.buffer_views[view].byte_stride.filter(|_| strided);
-        let stride = stride.unwrap_or(size as u64);
-        if stride < size as u64 {
+        let (size, offset) = (size_of::<T>(), offset.unwrap_or_default().0);
+        let stride = element(&self.document.root, view, "buffer view")?.byte_stride.filter(|_| strided);
+        let stride = stride.map_or(size, |stride| stride.0);
+        if stride < size {
             return broken(format!("buffer view {view} has a stride of {stride} bytes, less than an element's {size}"));
         }
         // Bytes from the first element's start to the last one's end.
         let span = match count {
             0 => Some(0),
-            _ => (count - 1).checked_mul(stride).and_then(|last| last.checked_add(size as u64)),
+            _ => (count - 1).checked_mul(stride as u64).and_then(|last| last.checked_add(size as u64)),
         };
         let end = span.and_then(|span| span.checked_add(offset)).filter(|&end| end <= bytes.len() as u64);
         let Some(end) = end else {
@@ -230,34 +225,26 @@ impl<'a> Accessors<'a> {
         };
         // Offset and stride are now known to be within memory.
         let bytes = if count == 0 { &bytes[..0] } else { &bytes[offset as usize..end as usize] };
-        Ok(bytes.chunks(stride as usize).map(move |chunk| &chunk[..size]))
+        Ok(ItemIter::new(bytes, stride))
     }
 
-    fn view(&self, index: usize) -> Outcome<&'a [u8]> {
-        let view = element(&self.document.buffer_views, index, "buffer view")?;
-        let Some(bytes) = element(self.buffers, view.buffer, "buffer")? else {
+    fn view(&self, index: Index<View>) -> Outcome<&'a [u8]> {
+        let view = element(&self.document.root, index, "buffer view")?;
+        element(&self.document.root, view.buffer, "buffer")?;
+        let Some(bytes) = &self.buffers[view.buffer.value()] else {
             return broken(format!("buffer {} has no data", view.buffer));
         };
-        let range = view
-            .byte_offset
-            .checked_add(view.byte_length)
-            .and_then(|end| bytes.get(usize::try_from(view.byte_offset).ok()?..usize::try_from(end).ok()?));
+        let (offset, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
+        let range = offset
+            .checked_add(length)
+            .and_then(|end| bytes.get(usize::try_from(offset).ok()?..usize::try_from(end).ok()?));
         match range {
             Some(bytes) => Ok(bytes),
             None => broken(format!(
-                "{} bytes from byte {} do not fit into buffer {} of {} bytes",
-                view.byte_length,
-                view.byte_offset,
+                "{length} bytes from byte {offset} do not fit into buffer {} of {} bytes",
                 view.buffer,
                 bytes.len()
             )),
         }
-    }
-}
-
-fn unsigned(number: u32) -> Outcome<Component> {
-    match Component::from_number(number)? {
-        component @ (Component::U8 | Component::U16 | Component::U32) => Ok(component),
-        _ => broken(format!("indices of component type {number}; they must be unsigned (5121, 5123 or 5125)")),
     }
 }

@@ -1,7 +1,13 @@
 //! The bytes behind each buffer: the data chunk, a file beside the scene, or base64 within it.
+//!
+//! Not the `gltf` crate's reading of them, which does not name the file that is missing, opens files anywhere on the machine, devices
+//! and pipes too, and panics at names that are not UTF-8.
 
-use super::document::{Buffer, Document};
 use super::fault::{broken, Fault, Outcome};
+use base64::alphabet::{STANDARD, URL_SAFE};
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine};
+use gltf::json::{Buffer, Root};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
@@ -11,17 +17,19 @@ use std::path::Path;
 pub(super) type Bytes<'a> = Option<Cow<'a, [u8]>>;
 
 /// Loads all buffers of the document. Files are looked for in `folder`.
-pub(super) fn load<'a>(document: &Document, binary: Option<&'a [u8]>, folder: &Path) -> Outcome<Vec<Bytes<'a>>> {
-    let load = |(index, buffer): (usize, &Buffer)| {
+pub(super) fn load<'a>(root: &Root, binary: Option<&'a [u8]>, folder: &Path) -> Outcome<Vec<Bytes<'a>>> {
+    let load = |index: usize, buffer: &Buffer| {
+        let length = buffer.byte_length.0;
         let bytes = match &buffer.uri {
-            Some(uri) => Some(Cow::Owned(
-                fetch(uri, buffer.byte_length, folder).map_err(|fault| fault.within(|| format!("buffer {index}")))?,
-            )),
+            Some(uri) => Some(Cow::Owned(fetch(uri, length, folder)?)),
             None => binary.filter(|_| index == 0).map(Cow::Borrowed),
         };
-        exactly(bytes, buffer.byte_length).map_err(|fault| fault.within(|| format!("buffer {index}")))
+        exactly(bytes, length)
     };
-    document.buffers.iter().enumerate().map(load).collect()
+    let buffers = root.buffers.iter().enumerate();
+    buffers
+        .map(|(index, buffer)| load(index, buffer).map_err(|fault| fault.within(|| format!("buffer {index}"))))
+        .collect()
 }
 
 /// Cuts off the padding that a data chunk or file may have.
@@ -92,27 +100,16 @@ fn decode_data(data: &str) -> Outcome<Vec<u8>> {
     }
 }
 
+/// Of either alphabet, padded or not.
 fn decode_base64(text: &[u8]) -> Outcome<Vec<u8>> {
-    let text = text.strip_suffix(b"==").or(text.strip_suffix(b"=")).unwrap_or(text);
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 3);
-    let (mut pending, mut bits) = (0_u32, 0);
-    for (at, &letter) in text.iter().enumerate() {
-        let six = match letter {
-            b'A'..=b'Z' => letter - b'A',
-            b'a'..=b'z' => letter - b'a' + 26,
-            b'0'..=b'9' => letter - b'0' + 52,
-            b'+' | b'-' => 62,
-            b'/' | b'_' => 63,
-            _ => return broken(format!("its base64 data has an illegal character at {at}")),
-        };
-        pending = (pending << 6 | u32::from(six)) & 0xfff;
-        bits += 6;
-        if bits >= 8 {
-            bits -= 8;
-            bytes.push((pending >> bits) as u8);
-        }
-    }
-    Ok(bytes)
+    let lenient = GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true);
+    let alphabet = if text.iter().any(|letter| b"-_".contains(letter)) { URL_SAFE } else { STANDARD };
+    GeneralPurpose::new(&alphabet, lenient).decode(text).or_else(|error| match error {
+        DecodeError::InvalidByte(at, _) => broken(format!("its base64 data has an illegal character at {at}")),
+        other => broken(format!("its base64 data is illegal: {other}")),
+    })
 }
 
 fn percent_decoded(text: &str) -> Outcome<String> {

@@ -1,241 +1,62 @@
-//! The JSON of a glTF 2.0 file, as far as Sightline reads it.
+//! The JSON of a glTF 2.0 file: the `gltf` crate's model of it, and beside it what that model loses.
 //!
-//! Not the `gltf` crate's types: those keep transforms in `f32`, refuse scenes without `nodes`, and cut 64-bit numbers to 32 bits.
-//! Tests hold this reader to what that crate reads.
+//! The crate keeps transforms and lenses in `f32` where the format has numbers of any precision; those are read once more, in `f64`.
+//! It requires lists that may be left out, which are filled in, and cuts indices to 32 bits, so larger ones are refused first. Its validation is not used: it refuses files for what does no harm,
+//! such as attributes of unknown names and positions without bounds, lets vertex indices and node cycles pass, and panics at a
+//! POSITION that refers to no accessor. Every reference is checked where it is followed instead.
 
 use super::fault::{broken, Fault, Outcome};
-use serde::de::IgnoredAny;
+use gltf::json::Root;
 use serde::Deserialize;
-use serde_json::Value;
-use std::collections::BTreeMap;
+use serde_json::{json, Value};
 
-/// Extensions change nothing of what Sightline draws, but they must at least be objects.
-type Extensions = BTreeMap<String, BTreeMap<String, IgnoredAny>>;
+/// The node of an animation channel whose target is an extension's.
+pub(super) const NO_NODE: u32 = u32::MAX;
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Document {
-    pub accessors: Vec<Accessor>,
-    pub animations: Vec<Animation>,
-    pub buffers: Vec<Buffer>,
-    pub buffer_views: Vec<BufferView>,
-    pub cameras: Vec<Camera>,
-    pub materials: Vec<Material>,
-    pub meshes: Vec<Mesh>,
-    pub nodes: Vec<Node>,
-    pub scene: Option<usize>,
-    pub scenes: Vec<Scene>,
-    pub skins: Vec<Skin>,
+/// A glTF document.
+pub(super) struct Document<'a> {
+    pub root: Root,
+    /// Where each of the root's nodes is, in full precision.
+    pub places: Vec<Place>,
+    /// What each of the root's cameras sees, in full precision.
+    pub lenses: Vec<Lens>,
+    json: &'a [u8],
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Accessor {
-    pub buffer_view: Option<usize>,
-    #[serde(default)]
-    pub byte_offset: u64,
-    pub component_type: u32,
-    #[serde(default)]
-    pub normalized: bool,
-    pub count: u64,
-    #[serde(rename = "type")]
-    pub kind: String,
-    pub sparse: Option<Sparse>,
-    #[serde(default)]
-    pub min: Value,
-    #[serde(default)]
-    pub max: Value,
+/// The numbers that the crate would cut to `f32`.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Doubles {
+    nodes: Vec<Place>,
+    cameras: Vec<Lens>,
 }
 
-#[derive(Debug, Deserialize)]
-pub(super) struct Sparse {
-    pub count: u64,
-    pub indices: SparseIndices,
-    pub values: SparseValues,
+#[derive(Deserialize)]
+pub(super) struct Place {
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct SparseIndices {
-    pub buffer_view: usize,
-    #[serde(default)]
-    pub byte_offset: u64,
-    pub component_type: u32,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct SparseValues {
-    pub buffer_view: usize,
-    #[serde(default)]
-    pub byte_offset: u64,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Animation {
-    pub name: Option<String>,
-    #[serde(default)]
-    pub channels: Vec<Channel>,
-    #[serde(default)]
-    pub samplers: Vec<Sampler>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Channel {
-    pub sampler: usize,
-    pub target: Target,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Target {
-    pub node: Option<usize>,
-    pub path: String,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Sampler {
-    pub input: usize,
-    pub output: usize,
-    pub interpolation: Option<String>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Buffer {
-    pub uri: Option<String>,
-    pub byte_length: u64,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct BufferView {
-    pub buffer: usize,
-    #[serde(default)]
-    pub byte_offset: u64,
-    pub byte_length: u64,
-    pub byte_stride: Option<u64>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Camera {
-    pub name: Option<String>,
-    #[serde(rename = "type")]
-    pub kind: String,
+#[derive(Deserialize)]
+pub(super) struct Lens {
     pub perspective: Option<Perspective>,
     pub orthographic: Option<Orthographic>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 pub(super) struct Perspective {
     pub yfov: f64,
     pub znear: f64,
     pub zfar: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 pub(super) struct Orthographic {
     pub ymag: f64,
     pub znear: f64,
     pub zfar: f64,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Material {
-    pub name: Option<String>,
-    #[serde(default)]
-    pub pbr_metallic_roughness: PbrMetallicRoughness,
-    pub alpha_mode: Option<String>,
-    // Textures are not loaded yet; that they are well-formed is checked all the same.
-    #[serde(rename = "normalTexture")]
-    _normal_texture: Option<TextureReference>,
-    #[serde(rename = "occlusionTexture")]
-    _occlusion_texture: Option<TextureReference>,
-    #[serde(rename = "emissiveTexture")]
-    _emissive_texture: Option<TextureReference>,
-    #[serde(rename = "extensions")]
-    _extensions: Option<Extensions>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct PbrMetallicRoughness {
-    pub base_color_factor: Option<[f32; 4]>,
-    #[serde(rename = "baseColorTexture")]
-    _base_color_texture: Option<TextureReference>,
-    #[serde(rename = "metallicRoughnessTexture")]
-    _metallic_roughness_texture: Option<TextureReference>,
-}
-
-#[derive(Debug, Deserialize)]
-struct TextureReference {
-    #[serde(rename = "index")]
-    _index: usize,
-    #[serde(rename = "scale")]
-    _scale: Option<f64>,
-    #[serde(rename = "strength")]
-    _strength: Option<f64>,
-    #[serde(rename = "extensions")]
-    _extensions: Option<Extensions>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Mesh {
-    pub name: Option<String>,
-    pub primitives: Vec<Primitive>,
-    pub weights: Option<Vec<f32>>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Primitive {
-    pub attributes: BTreeMap<String, usize>,
-    pub indices: Option<usize>,
-    pub material: Option<usize>,
-    pub mode: Option<u32>,
-    #[serde(default)]
-    pub targets: Vec<BTreeMap<String, usize>>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Node {
-    pub name: Option<String>,
-    pub children: Vec<usize>,
-    pub camera: Option<usize>,
-    pub mesh: Option<usize>,
-    pub skin: Option<usize>,
-    pub weights: Option<Vec<f32>>,
-    pub matrix: Option<[f64; 16]>,
-    pub translation: Option<[f64; 3]>,
-    pub rotation: Option<[f64; 4]>,
-    pub scale: Option<[f64; 3]>,
-    pub extensions: NodeExtensions,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct NodeExtensions {
-    #[serde(rename = "EXT_mesh_gpu_instancing")]
-    pub instancing: Option<Instancing>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Instancing {
-    pub attributes: BTreeMap<String, usize>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Scene {
-    #[serde(rename = "name")]
-    _name: Option<String>,
-    #[serde(default)]
-    pub nodes: Vec<usize>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Skin {
-    pub name: Option<String>,
-    pub joints: Vec<usize>,
 }
 
 /// What must be known before the rest can be understood: another version has another schema.
@@ -255,7 +76,7 @@ struct Asset {
 }
 
 /// Reads the JSON, after its version and required extensions have been found to be ones that Sightline knows.
-pub(super) fn parse(json: &[u8]) -> Outcome<Document> {
+pub(super) fn parse(json: &[u8]) -> Outcome<Document<'_>> {
     let head: Head = from_json(json)?;
     let Some(asset) = head.asset else {
         return broken("it has no 'asset', so it is not glTF 2.0");
@@ -264,20 +85,138 @@ pub(super) fn parse(json: &[u8]) -> Outcome<Document> {
     for extension in &head.extensions_required {
         check_extension(extension)?;
     }
-    from_json(json)
+    check_whole_numbers(json)?;
+    let read = match Root::from_slice(json) {
+        Ok(root) => (root, from_json(json)?),
+        // What is missing may have been filled in; any other error knows its line, which the second reading does not.
+        Err(error) => mended(json).map_err(|still| {
+            let missing = error.to_string().starts_with("missing field");
+            refusal(if missing { &still } else { &error })
+        })?,
+    };
+    let (root, Doubles { nodes: places, cameras: lenses }) = read;
+    Ok(Document { root, places, lenses, json })
+}
+
+impl Document<'_> {
+    /// What the file says at a JSON pointer, for faults: of values that it does not know the crate only says so.
+    pub(super) fn said(&self, pointer: &str) -> String {
+        let document: Option<Value> = serde_json::from_slice(self.json).ok();
+        match document.as_ref().and_then(|document| document.pointer(pointer)) {
+            Some(Value::String(text)) => text.clone(),
+            Some(value) => value.to_string(),
+            None => String::new(),
+        }
+    }
+}
+
+/// Refuses indices and codes beyond 32 bits, which the crate would cut to others without a word.
+fn check_whole_numbers(json: &[u8]) -> Outcome<()> {
+    let numbers = json.split(|byte| !(byte.is_ascii_digit() || b"+-.eE".contains(byte)));
+    // Most documents have none so long, and need no second look.
+    if numbers.filter(|number| number.len() > 9).all(|number| number.iter().any(|byte| !byte.is_ascii_digit())) {
+        return Ok(());
+    }
+    match beyond_32_bits("", &from_json(json)?) {
+        Some((key, number)) => broken(format!("it has a '{key}' of {number}, beyond 32 bits")),
+        None => Ok(()),
+    }
+}
+
+fn beyond_32_bits<'a>(key: &'a str, value: &'a Value) -> Option<(&'a str, u64)> {
+    /// Lengths, offsets and counts have 64 bits, and other numbers are not whole.
+    const CUT: [&str; 20] = [
+        "POSITION",
+        "NORMAL",
+        "buffer",
+        "bufferView",
+        "camera",
+        "children",
+        "componentType",
+        "indices",
+        "input",
+        "joints",
+        "material",
+        "mesh",
+        "mode",
+        "node",
+        "nodes",
+        "output",
+        "sampler",
+        "scene",
+        "skin",
+        "source",
+    ];
+    match value {
+        Value::Number(number) if CUT.contains(&key) => {
+            number.as_u64().filter(|&it| it > u32::MAX.into()).map(|it| (key, it))
+        }
+        Value::Array(list) => list.iter().find_map(|value| beyond_32_bits(key, value)),
+        Value::Object(object) => object.iter().find_map(|(key, value)| beyond_32_bits(key, value)),
+        _ => None,
+    }
+}
+
+/// The document with what the crate requires and the format does not.
+fn mended(json: &[u8]) -> Result<(Root, Doubles), serde_json::Error> {
+    let mut document: Value = serde_json::from_slice(json)?;
+    strip_nulls(&mut document);
+    each(&mut document, "scenes").for_each(|scene| complete(scene, "nodes", json!([])));
+    for animation in each(&mut document, "animations") {
+        complete(animation, "samplers", json!([]));
+        complete(animation, "channels", json!([]));
+        let targets = each(animation, "channels").filter_map(|channel| channel.get_mut("target"));
+        targets.for_each(|target| complete(target, "node", NO_NODE.into()));
+    }
+    let lenses = each(&mut document, "cameras").filter_map(|camera| camera.get_mut("orthographic"));
+    lenses.for_each(|lens| complete(lens, "xmag", json!(1)));
+    Ok((serde_json::from_value(document.clone())?, serde_json::from_value(document)?))
+}
+
+/// The elements of a list, if there is one.
+fn each<'a>(parent: &'a mut Value, list: &str) -> impl Iterator<Item = &'a mut Value> {
+    parent.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+fn complete(object: &mut Value, key: &str, value: Value) {
+    if let Some(object) = object.as_object_mut() {
+        object.entry(key).or_insert(value);
+    }
+}
+
+/// Some exporters write null for what they should leave out. JSON is never nested deeper than its reader's limit.
+fn strip_nulls(value: &mut Value) {
+    match value {
+        Value::Object(object) => {
+            object.retain(|_, value| !value.is_null());
+            object.values_mut().for_each(strip_nulls);
+        }
+        Value::Array(list) => list.iter_mut().for_each(strip_nulls),
+        _ => {}
+    }
 }
 
 fn from_json<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Outcome<T> {
-    serde_json::from_slice(json).map_err(|error| {
-        // The types are Rust's: in words for everyone else.
-        let error = error
-            .to_string()
-            .replace("expected usize", "expected an index")
-            .replace("expected u64", "expected a count");
-        let error =
-            error.replace("expected u32", "expected a number from a list").replace("expected f64", "expected a number");
-        Fault::Broken(format!("the JSON is not a glTF 2.0 document: {error}"))
-    })
+    serde_json::from_slice(json).map_err(|error| refusal(&error))
+}
+
+/// What was expected, in words: the types in the message are Rust's.
+fn refusal(error: &serde_json::Error) -> Fault {
+    const WORDS: [(&str, &str); 6] = [
+        ("expected index into child of root", "expected an index"),
+        ("expected usize", "expected an index"),
+        ("expected u64", "expected a count"),
+        ("expected u32", "expected a number from a list"),
+        ("expected f32", "expected a number"),
+        ("expected f64", "expected a number"),
+    ];
+    let mut text = WORDS.iter().fold(error.to_string(), |text, (rust, words)| text.replace(rust, words));
+    if let Some((before, (_, after))) =
+        text.split_once("expected struct ").and_then(|(before, name)| Some((before, name.split_once(' ')?)))
+    {
+        text = format!("{before}expected an object {after}");
+    }
+    Fault::Broken(format!("the JSON is not a glTF 2.0 document: {text}"))
 }
 
 fn check_version(version: Option<&str>) -> Outcome<()> {

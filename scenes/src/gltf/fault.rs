@@ -1,6 +1,7 @@
 //! What can be wrong inside a glTF file, before the file's name is added.
 
 use crate::error::SceneError;
+use gltf::json::{Index, Root};
 use std::path::Path;
 
 /// Longest fault shown. Names and values in it come from the file, which may be hostile.
@@ -73,9 +74,13 @@ pub(super) fn label(kind: &str, index: usize, name: Option<&str>) -> String {
     }
 }
 
-/// The element of a list that the file refers to by index.
-pub(super) fn element<'a, T>(list: &'a [T], index: usize, kind: &str) -> Outcome<&'a T> {
-    match list.get(index) {
+/// The element of one of the lists of the file that it refers to by index. The crate would panic where there is none.
+pub(super) fn element<'a, T>(root: &'a Root, index: Index<T>, kind: &str) -> Outcome<&'a T>
+where
+    Root: AsRef<[T]>,
+{
+    let list = root.as_ref();
+    match list.get(index.value()) {
         Some(element) => Ok(element),
         None => broken(format!("it refers to {kind} {index}, but the file has {}", list.len())),
     }

@@ -1,11 +1,14 @@
 //! Node animation: the tracks of all animations of a file, and the part of the node tree that they move.
 
 use super::accessor::{Accessors, Allowed};
-use super::document::{Animation, Channel, Document};
+use super::document::{Document, NO_NODE};
 use super::fault::{broken, element, label, Fault, Outcome};
 use super::tree::{matrix, node_label, unit, Tree};
 use crate::animation::{AnimatedNode, Interpolate, Interpolation, Local, Track};
 use glam::{DAffine3, DQuat, DVec3};
+use gltf::json::animation::{Interpolation as Between, Property};
+use gltf::json::validation::Checked::Valid;
+use gltf::json::{Animation, Index};
 
 /// The tracks on one node.
 #[derive(Default)]
@@ -30,10 +33,10 @@ pub(super) struct Moving {
 
 impl Moving {
     pub(super) fn read(document: &Document, accessors: &Accessors, tree: &Tree) -> Outcome<Self> {
-        let mut tracks: Vec<Tracks> = document.nodes.iter().map(|_| Tracks::default()).collect();
-        for (index, animation) in document.animations.iter().enumerate() {
-            for (at, channel) in animation.channels.iter().enumerate() {
-                read_channel(document, accessors, animation, channel, &mut tracks).map_err(|fault| {
+        let mut tracks: Vec<Tracks> = document.root.nodes.iter().map(|_| Tracks::default()).collect();
+        for (index, animation) in document.root.animations.iter().enumerate() {
+            for at in 0..animation.channels.len() {
+                read_channel(document, accessors, (index, animation), at, &mut tracks).map_err(|fault| {
                     fault.within(|| format!("{}, channel {at}", label("animation", index, animation.name.as_deref())))
                 })?;
             }
@@ -101,19 +104,28 @@ fn in_parts(local: &Local) -> Outcome<Local> {
 fn read_channel(
     document: &Document,
     accessors: &Accessors,
-    animation: &Animation,
-    channel: &Channel,
+    (index, animation): (usize, &Animation),
+    at: usize,
     tracks: &mut [Tracks],
 ) -> Outcome<()> {
-    let sampler = element(&animation.samplers, channel.sampler, "sampler")?;
-    // Without a node, the target is an extension's.
-    let Some(node) = channel.target.node else { return Ok(()) };
-    element(&document.nodes, node, "node")?;
-    let interpolation = match sampler.interpolation.as_deref() {
-        None | Some("LINEAR") => Interpolation::Linear,
-        Some("STEP") => Interpolation::Step,
-        Some("CUBICSPLINE") => Interpolation::CubicSpline,
-        Some(other) => return broken(format!("its interpolation '{other}' is none of LINEAR, STEP and CUBICSPLINE")),
+    let said = |property: &str| document.said(&format!("/animations/{index}/{property}"));
+    let (of_file, target) = (animation.channels[at].sampler.value(), &animation.channels[at].target);
+    let Some(sampler) = animation.samplers.get(of_file) else {
+        return broken(format!("it refers to sampler {of_file}, but the animation has {}", animation.samplers.len()));
+    };
+    let node = target.node;
+    if node == Index::new(NO_NODE) {
+        return Ok(());
+    }
+    element(&document.root, node, "node")?;
+    let interpolation = match sampler.interpolation {
+        Valid(Between::Linear) => Interpolation::Linear,
+        Valid(Between::Step) => Interpolation::Step,
+        Valid(Between::CubicSpline) => Interpolation::CubicSpline,
+        _ => {
+            let other = said(&format!("samplers/{of_file}/interpolation"));
+            return broken(format!("its interpolation '{other}' is none of LINEAR, STEP and CUBICSPLINE"));
+        }
     };
     let inputs = || -> Outcome<Vec<f64>> {
         let times = accessors.vectors::<1>(sampler.input, Allowed::Floats)?;
@@ -123,13 +135,15 @@ fn read_channel(
         let values = accessors.vectors::<3>(sampler.output, Allowed::Floats)?;
         Ok(values.into_iter().map(|value| DVec3::from_array(value.map(f64::from))).collect())
     };
-    let tracks = &mut tracks[node];
-    match channel.target.path.as_str() {
-        "translation" if tracks.translation.is_none() => {
+    let tracks = &mut tracks[node.value()];
+    match target.path {
+        Valid(Property::Translation) if tracks.translation.is_none() => {
             tracks.translation = Some(track(interpolation, inputs()?, vectors()?)?)
         }
-        "scale" if tracks.scale.is_none() => tracks.scale = Some(track(interpolation, inputs()?, vectors()?)?),
-        "rotation" if tracks.rotation.is_none() => {
+        Valid(Property::Scale) if tracks.scale.is_none() => {
+            tracks.scale = Some(track(interpolation, inputs()?, vectors()?)?)
+        }
+        Valid(Property::Rotation) if tracks.rotation.is_none() => {
             let values = accessors.vectors::<4>(sampler.output, Allowed::Normalized)?;
             let values = values.into_iter().map(|value| DQuat::from_array(value.map(f64::from)));
             // Tangents of splines are no rotations: only values get unit length.
@@ -143,8 +157,11 @@ fn read_channel(
             };
             tracks.rotation = Some(track(interpolation, inputs()?, values)?);
         }
-        "translation" | "rotation" | "scale" | "weights" | "pointer" => {}
-        other => return broken(format!("its path '{other}' is none of translation, rotation, scale and weights")),
+        Valid(_) => {}
+        _ => {
+            let other = said(&format!("channels/{at}/target/path"));
+            return broken(format!("its path '{other}' is none of translation, rotation, scale and weights"));
+        }
     }
     Ok(())
 }

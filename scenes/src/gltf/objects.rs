@@ -1,14 +1,20 @@
 //! Objects: every primitive of every node's mesh, once for each instance.
 
 use super::accessor::{Accessors, Allowed};
-use super::document::{Document, Instancing};
+use super::document::Document;
 use super::fault::{broken, element, label, one_line, Fault, Outcome};
 use super::mesh;
 use super::tree::{node_label, placed, unit, Tree};
 use crate::check::MOST_OBJECTS;
 use crate::model::{Mesh, Object};
 use glam::{DAffine3, DQuat, DVec3};
-use std::collections::HashMap;
+use gltf::json::accessor::Accessor;
+use gltf::json::material::{AlphaMode, Material};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Mesh as FileMesh};
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
 
 /// Longest object or mesh name kept, in characters: a node's name is copied to each of its instances.
 const LONGEST_NAME: usize = 200;
@@ -30,12 +36,18 @@ pub(super) struct Placement {
     pub node_from_object: DAffine3,
 }
 
+/// EXT_mesh_gpu_instancing, which the crate does not know.
+#[derive(Deserialize)]
+struct Instancing {
+    attributes: BTreeMap<String, u32>,
+}
+
 /// Collects objects and the meshes they share.
 pub(super) struct Objects<'a> {
-    document: &'a Document,
+    document: &'a Document<'a>,
     accessors: &'a Accessors<'a>,
     /// By mesh, and by node if the node has morph weights of its own.
-    parts: HashMap<(usize, Option<usize>), Vec<Part>>,
+    parts: HashMap<(Index<FileMesh>, Option<usize>), Vec<Part>>,
     indices: usize,
     /// What has been found so far.
     pub meshes: Vec<Mesh>,
@@ -51,9 +63,11 @@ impl<'a> Objects<'a> {
 
     /// Adds the objects of one node.
     pub(super) fn add(&mut self, node: usize, tree: &Tree) -> Outcome<()> {
-        let Some(mesh) = self.document.nodes[node].mesh else { return Ok(()) };
+        let root = &self.document.root;
+        let Some(mesh) = root.nodes[node].mesh else { return Ok(()) };
         let parts = self.parts(node, mesh)?;
-        let instances = match &self.document.nodes[node].extensions.instancing {
+        let extensions = root.nodes[node].extensions.as_ref();
+        let instances = match extensions.and_then(|extensions| extensions.others.get("EXT_mesh_gpu_instancing")) {
             Some(instancing) => self.instances(instancing).map_err(|fault| {
                 fault.within(|| format!("{}: EXT_mesh_gpu_instancing", node_label(self.document, node)))
             })?,
@@ -63,7 +77,7 @@ impl<'a> Objects<'a> {
         if total.is_none_or(|total| total > MOST_OBJECTS) {
             return Err(Fault::TooLarge(format!("it has more than {MOST_OBJECTS} objects")));
         }
-        let name = self.document.nodes[node].name.as_deref().or(self.document.meshes[mesh].name.as_deref());
+        let name = root.nodes[node].name.as_deref().or(root.meshes[mesh.value()].name.as_deref());
         let name = name.map_or_else(|| format!("node {node}"), |name| one_line(name, LONGEST_NAME));
         for (index, part) in parts.iter().enumerate() {
             let name = if parts.len() == 1 { name.clone() } else { format!("{name}/{index}") };
@@ -93,23 +107,24 @@ impl<'a> Objects<'a> {
     }
 
     /// The primitives of a mesh, read when first needed.
-    fn parts(&mut self, node: usize, index: usize) -> Outcome<Vec<Part>> {
+    fn parts(&mut self, node: usize, index: Index<FileMesh>) -> Outcome<Vec<Part>> {
         let document = self.document;
-        let own_weights = document.nodes[node].weights.as_deref();
+        let own_weights = document.root.nodes[node].weights.as_deref();
         let key = (index, own_weights.map(|_| node));
         if let Some(parts) = self.parts.get(&key) {
             return Ok(parts.clone());
         }
         let mesh =
-            element(&document.meshes, index, "mesh").map_err(|fault| fault.within(|| node_label(document, node)))?;
+            element(&document.root, index, "mesh").map_err(|fault| fault.within(|| node_label(document, node)))?;
         let weights = own_weights.or(mesh.weights.as_deref()).unwrap_or(&[]);
         let mut parts = Vec::new();
         for (at, primitive) in mesh.primitives.iter().enumerate() {
-            let place = || format!("{}, primitive {at}", label("mesh", index, mesh.name.as_deref()));
+            let place = || format!("{}, primitive {at}", label("mesh", index.value(), mesh.name.as_deref()));
             let name =
                 mesh.name.as_deref().map_or_else(|| format!("mesh {index}"), |name| one_line(name, LONGEST_NAME));
             let name = if mesh.primitives.len() == 1 { name } else { format!("{name}/{at}") };
-            let read = mesh::read(self.accessors, primitive, weights, name, &mut self.indices)
+            let said_mode = || document.said(&format!("/meshes/{index}/primitives/{at}/mode"));
+            let read = mesh::read(self.accessors, primitive, weights, name, &mut self.indices, said_mode)
                 .map_err(|fault| fault.within(place))?;
             let Some(read) = read else {
                 tracing::warn!("{} has no positions and is not drawn", place());
@@ -124,19 +139,18 @@ impl<'a> Objects<'a> {
         Ok(parts)
     }
 
-    fn part(&self, mesh: u32, material: Option<usize>) -> Outcome<Part> {
+    fn part(&self, mesh: u32, material: Option<Index<Material>>) -> Outcome<Part> {
         let mut part = Part { mesh, colour: [1.0; 4], translucent: false, masked: false };
         let Some(index) = material else { return Ok(part) };
-        let material = element(&self.document.materials, index, "material")?;
-        if let Some(colour) = material.pbr_metallic_roughness.base_color_factor {
-            part.colour = colour.map(|channel| channel.clamp(0.0, 1.0));
-        }
-        match material.alpha_mode.as_deref() {
-            None | Some("OPAQUE") => {}
-            Some("BLEND") => part.translucent = true,
-            Some("MASK") => part.masked = true,
-            Some(other) => {
-                let material = label("material", index, material.name.as_deref());
+        let material = element(&self.document.root, index, "material")?;
+        part.colour = material.pbr_metallic_roughness.base_color_factor.0.map(|channel| channel.clamp(0.0, 1.0));
+        match material.alpha_mode {
+            Checked::Valid(AlphaMode::Opaque) => {}
+            Checked::Valid(AlphaMode::Blend) => part.translucent = true,
+            Checked::Valid(AlphaMode::Mask) => part.masked = true,
+            Checked::Invalid => {
+                let other = self.document.said(&format!("/materials/{index}/alphaMode"));
+                let material = label("material", index.value(), material.name.as_deref());
                 return broken(format!("{material}: its alphaMode '{other}' is none of OPAQUE, MASK and BLEND"));
             }
         }
@@ -144,9 +158,12 @@ impl<'a> Objects<'a> {
     }
 
     /// Node from object of each instance (EXT_mesh_gpu_instancing).
-    fn instances(&self, instancing: &Instancing) -> Outcome<Vec<DAffine3>> {
-        let accessor = |name: &str| instancing.attributes.get(name).copied();
-        let counts = instancing.attributes.values().map(|&index| self.accessors.count(index));
+    fn instances(&self, instancing: &Value) -> Outcome<Vec<DAffine3>> {
+        let instancing =
+            Option::<Instancing>::deserialize(instancing).map_err(|error| Fault::Broken(error.to_string()))?;
+        let Some(Instancing { attributes }) = instancing else { return Ok(vec![DAffine3::IDENTITY]) };
+        let accessor = |name: &str| attributes.get(name).map(|&index| Index::<Accessor>::new(index));
+        let counts = attributes.values().map(|&index| self.accessors.count(Index::new(index)));
         let counts: Vec<u64> = counts.collect::<Outcome<_>>()?;
         let Some(&count) = counts.first() else { return Ok(vec![DAffine3::IDENTITY]) };
         if counts.iter().any(|&other| other != count) {

@@ -1,9 +1,10 @@
 //! The node tree: parents, order, and world transforms, without recursion, since a file may nest its nodes at any depth.
 
-use super::document::{Document, Node};
+use super::document::{Document, Place};
 use super::fault::{broken, element, label, Outcome};
 use crate::animation::Local;
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
+use gltf::json::{Index, Node, Root};
 
 /// Largest difference of a matrix's last row from 0 0 0 1: rounding of exporters that work in f32.
 const LAST_ROW_TOLERANCE: f64 = 1e-4;
@@ -24,16 +25,17 @@ pub(super) struct Tree {
 
 impl Tree {
     pub(super) fn new(document: &Document) -> Outcome<Self> {
-        let parents = parents(&document.nodes)?;
-        let roots = roots(&document.nodes, &parents)?;
-        let order = order(document, &parents)?;
+        let root = &document.root;
+        let parents = parents(root)?;
+        let roots = roots(&root.nodes, &parents)?;
+        let order = order(root, &parents)?;
         let locals = document
-            .nodes
+            .places
             .iter()
             .enumerate()
-            .map(|(index, node)| local(node).map_err(|fault| fault.within(|| node_label(document, index))));
+            .map(|(index, place)| local(place).map_err(|fault| fault.within(|| node_label(document, index))));
         let locals: Vec<Local> = locals.collect::<Outcome<_>>()?;
-        let mut world_from_node = vec![DAffine3::IDENTITY; document.nodes.len()];
+        let mut world_from_node = vec![DAffine3::IDENTITY; root.nodes.len()];
         for &node in &order {
             let world_from_parent = parents[node].map_or(DAffine3::IDENTITY, |parent| world_from_node[parent]);
             world_from_node[node] = placed(world_from_parent, matrix(&locals[node]));
@@ -43,7 +45,7 @@ impl Tree {
 }
 
 pub(super) fn node_label(document: &Document, index: usize) -> String {
-    label("node", index, document.nodes.get(index).and_then(|node| node.name.as_deref()))
+    label("node", index, document.root.nodes.get(index).and_then(|node| node.name.as_deref()))
 }
 
 /// `outer * inner`, but bit for bit one of them where the other is the identity: a product may flip the sign of a zero.
@@ -64,12 +66,17 @@ pub(super) fn matrix(local: &Local) -> DAffine3 {
     }
 }
 
-fn parents(nodes: &[Node]) -> Outcome<Vec<Option<usize>>> {
-    let mut parents = vec![None; nodes.len()];
-    for (index, node) in nodes.iter().enumerate() {
-        for &child in &node.children {
-            element(nodes, child, "node").map_err(|fault| fault.within(|| format!("node {index}")))?;
-            match parents[child].replace(index) {
+/// The nodes that hang on a node.
+fn children(node: &Node) -> impl Iterator<Item = Index<Node>> + '_ {
+    node.children.iter().flatten().copied()
+}
+
+fn parents(root: &Root) -> Outcome<Vec<Option<usize>>> {
+    let mut parents = vec![None; root.nodes.len()];
+    for (index, node) in root.nodes.iter().enumerate() {
+        for child in children(node) {
+            element(root, child, "node").map_err(|fault| fault.within(|| format!("node {index}")))?;
+            match parents[child.value()].replace(index) {
                 Some(other) if other == index => {
                     return broken(format!("node {index} lists node {child} twice as a child"))
                 }
@@ -89,7 +96,7 @@ fn roots(nodes: &[Node], parents: &[Option<usize>]) -> Outcome<Vec<usize>> {
     let mut reached: Vec<(usize, usize)> = tops.map(|node| (node, node)).collect();
     while let Some((node, root)) = reached.pop() {
         roots[node] = Some(root);
-        reached.extend(nodes[node].children.iter().map(|&child| (child, root)));
+        reached.extend(children(&nodes[node]).map(|child| (child.value(), root)));
     }
     let Some(lost) = roots.iter().position(Option::is_none) else {
         return Ok(roots.into_iter().flatten().collect());
@@ -101,35 +108,34 @@ fn roots(nodes: &[Node], parents: &[Option<usize>]) -> Outcome<Vec<usize>> {
 }
 
 /// The nodes of the shown scene: the default one, or the first.
-fn order(document: &Document, parents: &[Option<usize>]) -> Outcome<Vec<usize>> {
+fn order(root: &Root, parents: &[Option<usize>]) -> Outcome<Vec<usize>> {
     // A file of meshes alone is legal, and some such name a default scene all the same.
-    if document.scenes.is_empty() {
+    if root.scenes.is_empty() {
         return Ok(Vec::new());
     }
-    let index = document.scene.unwrap_or(0);
-    let scene =
-        element(&document.scenes, index, "scene").map_err(|fault| fault.within(|| "its default scene".into()))?;
-    let mut order = Vec::with_capacity(document.nodes.len());
-    let mut listed = vec![false; document.nodes.len()];
-    for &root in &scene.nodes {
-        element(&document.nodes, root, "node").map_err(|fault| fault.within(|| format!("scene {index}")))?;
-        if let Some(parent) = parents[root] {
-            return broken(format!("scene {index} lists node {root}, which is no root but a child of node {parent}"));
+    let index = root.scene.unwrap_or(Index::new(0));
+    let scene = element(root, index, "scene").map_err(|fault| fault.within(|| "its default scene".into()))?;
+    let mut order = Vec::with_capacity(root.nodes.len());
+    let mut listed = vec![false; root.nodes.len()];
+    for &top in &scene.nodes {
+        element(root, top, "node").map_err(|fault| fault.within(|| format!("scene {index}")))?;
+        if let Some(parent) = parents[top.value()] {
+            return broken(format!("scene {index} lists node {top}, which is no root but a child of node {parent}"));
         }
-        if !std::mem::replace(&mut listed[root], true) {
-            order.push(root);
+        if !std::mem::replace(&mut listed[top.value()], true) {
+            order.push(top.value());
         }
     }
     let mut next = 0;
     while next < order.len() {
-        order.extend(&document.nodes[order[next]].children);
+        order.extend(children(&root.nodes[order[next]]).map(|child| child.value()));
         next += 1;
     }
     Ok(order)
 }
 
-fn local(node: &Node) -> Outcome<Local> {
-    if let Some(columns) = node.matrix {
+fn local(place: &Place) -> Outcome<Local> {
+    if let Some(columns) = place.matrix {
         let column = |index: usize| DVec3::from_slice(&columns[4 * index..]);
         let last_row = DVec4::new(columns[3], columns[7], columns[11], columns[15]);
         if !columns.iter().all(|number| number.is_finite()) {
@@ -143,9 +149,9 @@ fn local(node: &Node) -> Outcome<Local> {
         let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
         return Ok(Local::Matrix(DAffine3 { matrix3, translation: column(3) }));
     }
-    let translation = node.translation.map_or(DVec3::ZERO, DVec3::from_array);
-    let scale = node.scale.map_or(DVec3::ONE, DVec3::from_array);
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
+    let translation = place.translation.map_or(DVec3::ZERO, DVec3::from_array);
+    let scale = place.scale.map_or(DVec3::ONE, DVec3::from_array);
+    let rotation = place.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
     if !(translation.is_finite() && scale.is_finite() && rotation.is_finite()) {
         return broken("its translation, rotation or scale has a number that is not finite");
     }

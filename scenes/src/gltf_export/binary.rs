@@ -2,6 +2,7 @@
 
 use crate::model::Aabb;
 use glam::Vec3;
+use gltf::binary::{Glb, Header};
 use serde_json::{json, Value};
 
 const FLOAT: u32 = 5126;
@@ -69,23 +70,11 @@ impl Binary {
     }
 }
 
-/// A .glb of its two chunks; none if it would pass 4 GiB.
-pub(super) fn container(mut json: Vec<u8>, binary: Vec<u8>) -> Option<Vec<u8>> {
-    // Chunks end on multiples of 4; data does already, text is filled with spaces.
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let binary_chunk = if binary.is_empty() { 0 } else { 8 + binary.len() };
-    let total = u32::try_from(12 + 8 + json.len() + binary_chunk).ok()?;
-    let mut file = Vec::with_capacity(total as usize);
-    file.extend(b"glTF");
-    file.extend(2u32.to_le_bytes());
-    file.extend(total.to_le_bytes());
-    file.extend((json.len() as u32).to_le_bytes());
-    file.extend(b"JSON");
-    file.extend(json);
-    if !binary.is_empty() {
-        file.extend((binary.len() as u32).to_le_bytes());
-        file.extend(b"BIN\0");
-        file.extend(binary);
-    }
-    Some(file)
+/// A .glb of its two chunks; none if it would pass 4 GiB, which the crate would cut off.
+pub(super) fn container(json: Vec<u8>, binary: Vec<u8>) -> Option<Vec<u8>> {
+    u32::try_from(12 + 8 + json.len().next_multiple_of(4) + 8 + binary.len()).ok()?;
+    let binary = (!binary.is_empty()).then(|| binary.into());
+    // Its writer fills in the length.
+    let header = Header { magic: *b"glTF", version: 2, length: 0 };
+    Glb { header, json: json.into(), bin: binary }.to_vec().ok()
 }

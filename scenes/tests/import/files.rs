@@ -85,13 +85,33 @@ fn wrong_lengths_in_a_glb_are_refused() {
     let file = Model::triangle().glb();
     let with = |at: usize, word: u32| [&file[..at], &word.to_le_bytes(), &file[at + 4..]].concat();
     assert_says(&error(&with(8, 77)), "its header says 77 bytes");
-    assert_says(&error(&with(12, u32::MAX)), "the chunk at byte 12 says 4294967295 bytes");
+    // Less than the header itself: the gltf crate subtracts without looking.
+    assert_says(&error(&with(8, 3)), "its header says 3 bytes");
+    assert_says(&error(b"glTF\x02\0\0\0\x0c\0\0\0"), "it ends at byte 12, inside a header");
+    assert_says(&error(&with(12, u32::MAX)), "its chunk of JSON says 4294967295 bytes");
     assert_says(&error(&with(12, 4)), "made/here.glb");
     assert_says(&error(&with(16, 0)), "its first chunk is not JSON");
     assert_says(&error(&with(4, 1)), "glTF version 1.0 is not supported; convert it to glTF 2.0");
     assert_says(&error(&with(4, 9)), "glb version 9");
     let no_data = with(file.len() - 36 - 4, 0);
     assert_says(&error(&no_data), "buffer 0 has no data");
+}
+
+#[test]
+fn chunks_for_extensions_are_ignored() {
+    let file = Model::triangle().glb();
+    let json_end = 20 + u32::from_le_bytes(file[12..16].try_into().expect("four bytes")) as usize;
+    let with_length = |mut file: Vec<u8>| {
+        let length = file.len() as u32;
+        file[8..12].copy_from_slice(&length.to_le_bytes());
+        file
+    };
+    let extra = b"\x04\0\0\0ACMEdata";
+    let after = with_length([&file[..], extra].concat());
+    assert_eq!(import(&after).expect("a legal file").meshes, Model::triangle().scene().meshes);
+    // Data comes second or not at all.
+    let before = with_length([&file[..json_end], extra, &file[json_end..]].concat());
+    assert_says(&error(&before), "buffer 0 has no data");
 }
 
 #[test]

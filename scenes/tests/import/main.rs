@@ -1,6 +1,7 @@
 //! Laws of the glTF import, held by Debian's test models and by small files made here.
 
 mod accessors;
+mod crate_limits;
 mod files;
 mod model;
 mod models;

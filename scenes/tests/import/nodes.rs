@@ -163,6 +163,17 @@ fn places_without_a_meaning_are_refused() {
     assert_says(&model.error(), "node 1: its place in the world is not finite");
 }
 
+/// Found by fuzzing: `Scene::check` refuses such a scene, and the import let it pass.
+#[test]
+fn what_leaves_the_range_of_f32_is_refused() {
+    let mut model = Model::triangle();
+    let positions = model.floats("VEC3", &[0., 0., 0., -1.7e38, 0., 0., 0., 1., 0.]);
+    model.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
+    assert!(model.scene().check().is_ok());
+    model.json["nodes"][0] = json!({ "mesh": 0, "name": "far", "scale": [3, 1, 1] });
+    assert_says(&model.error(), "object 'far': its transform takes it beyond the range of 32-bit numbers");
+}
+
 #[test]
 fn cameras_keep_their_place_and_lens() {
     let mut model = Model::new();
