@@ -144,6 +144,16 @@ impl Vulkan {
 
     /// Ends, submits, waits and frees the command buffer.
     pub(crate) fn run(&self, commands: vk::CommandBuffer) -> std::result::Result<(), vk::Result> {
+        self.run_between(commands, &[], &[])
+    }
+
+    /// The same, begun once the device has passed some semaphores and signalling others at its end.
+    pub(crate) fn run_between(
+        &self,
+        commands: vk::CommandBuffer,
+        after: &[vk::SemaphoreSubmitInfo<'_>],
+        before: &[vk::SemaphoreSubmitInfo<'_>],
+    ) -> std::result::Result<(), vk::Result> {
         let queue = lock(&self.queue);
         let pool = lock(&self.pool);
         // SAFETY: the command buffer is recording and comes from the pool; queue and pool are locked. It is freed only
@@ -152,7 +162,10 @@ impl Vulkan {
             self.device.end_command_buffer(commands)?;
             let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
             let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
-            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&infos)];
+            let submits = [vk::SubmitInfo2::default()
+                .command_buffer_infos(&infos)
+                .wait_semaphore_infos(after)
+                .signal_semaphore_infos(before)];
             let done = self
                 .device
                 .queue_submit2(*queue, &submits, fence)
