@@ -81,6 +81,17 @@ impl Gpu {
         Ok(staging.bytes()?[..bytes].to_vec())
     }
 
+    pub(crate) fn stage_to_image(&self, to: vk::Image, format: Format, size: [u32; 2], bytes: &[u8]) -> Result<()> {
+        let vulkan = self.vulkan()?;
+        let mut staging = Staging::new(vulkan, bytes.len(), MemoryLocation::CpuToGpu)?;
+        staging.bytes()?[..bytes.len()].copy_from_slice(bytes);
+        let (from, region) = (staging.raw, whole_image(format, size));
+        vulkan.run_once(|device, commands| {
+            // SAFETY: the image is in the general layout and alive through the wait; the buffer holds all its texels.
+            unsafe { device.cmd_copy_buffer_to_image(commands, from, to, vk::ImageLayout::GENERAL, &[region]) };
+        })
+    }
+
     pub(crate) fn stage_from_image(&self, from: vk::Image, format: Format, size: [u32; 2]) -> Result<Vec<u8>> {
         let vulkan = self.vulkan()?;
         let bytes = size[0] as usize * size[1] as usize * format.texel_bytes(vulkan.depth);

@@ -43,6 +43,7 @@ pub fn run(cli: Cli) -> Result<()> {
         },
         Command::Report(arguments) => report::run(&arguments),
         Command::Shot(arguments) => shot::run(&arguments),
+        Command::View(arguments) => crate::view::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
