@@ -477,7 +477,8 @@ fn texts(lab: &Lab, controls: &Controls, told: &str, size: [u32; 2], scale: f64)
         texts.push((text, at));
     }
     // Last, so that in a small window it lies over the others.
-    texts.extend(Text::of(&hud::state(lab, controls, told), scale).map(|text| (text, [MARGIN; 2])));
+    let letters = Text::letters(size[0].saturating_sub(2 * MARGIN), scale);
+    texts.extend(Text::of(&hud::state(lab, controls, told, letters), scale).map(|text| (text, [MARGIN; 2])));
     texts
 }
 

@@ -4,13 +4,14 @@ use super::controls::Controls;
 use super::keys::KEYS;
 use super::lab::Lab;
 
-/// Letters of the longest line.
+/// Letters of the longest line, and of the shortest that lines are cut to in a narrow window.
 const LINE: usize = 92;
+const SHORTEST_LINE: usize = 16;
 /// Stages that are listed, the longest first to stay.
 const STAGES: usize = 12;
 
-/// What runs, how fast, and what it draws.
-pub fn state(lab: &Lab, controls: &Controls, told: &str) -> Vec<String> {
+/// What runs, how fast, and what it draws, in lines of so many letters.
+pub fn state(lab: &Lab, controls: &Controls, told: &str, letters: usize) -> Vec<String> {
     let session = &lab.session;
     let [width, height] = session.options().size;
     let device = session.gpu.info().map_or("", |info| info.name.as_str());
@@ -49,12 +50,19 @@ pub fn state(lab: &Lab, controls: &Controls, told: &str) -> Vec<String> {
     let modes: String = modes.iter().filter(|(on, _)| *on).map(|(_, word)| *word).collect();
     lines.push(format!("view: {}  speed {:.2} m/s{modes}", controls.show.name(), controls.camera.speed()));
     lines.extend([known.caption.as_str(), told].into_iter().filter(|line| !line.is_empty()).map(str::to_owned));
-    lines.iter().flat_map(|line| wrapped(line)).collect()
+    let letters = letters.clamp(SHORTEST_LINE, LINE);
+    lines.iter().flat_map(|line| wrapped(line, letters)).collect()
 }
 
-/// Each stage and its time, in the frame's order; of many, those that took longest.
+/// Each stage and its time, in the frame's order, summed over its runs; of many, those that took longest.
 pub fn stages(lab: &Lab) -> Vec<String> {
-    let all = &lab.known.stages;
+    let mut all: Vec<(&str, f64)> = Vec::new();
+    for (label, ms) in &lab.known.stages {
+        match all.iter_mut().find(|(known, _)| known == label) {
+            Some((_, sum)) => *sum += ms,
+            None => all.push((label, *ms)),
+        }
+    }
     let mut times: Vec<f64> = all.iter().map(|(_, ms)| *ms).collect();
     times.sort_unstable_by(|a, b| b.total_cmp(a));
     let least = times.get(STAGES - 1).copied().unwrap_or(0.0);
@@ -67,12 +75,12 @@ pub fn help() -> Vec<String> {
     KEYS.iter().filter(|(.., help)| !help.is_empty()).map(|(.., help)| (*help).to_owned()).collect()
 }
 
-/// A line cut at blanks into lines that fit.
-fn wrapped(line: &str) -> Vec<String> {
+/// A line cut at blanks into lines of so many letters; a longer word is left whole.
+fn wrapped(line: &str, letters: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in line.split(' ') {
         match lines.last_mut() {
-            Some(last) if last.len() + word.len() < LINE => {
+            Some(last) if last.len() + word.len() < letters => {
                 if !last.is_empty() {
                     last.push(' ');
                 }
@@ -91,11 +99,11 @@ mod tests {
     #[test]
     fn long_lines_are_cut_at_blanks_and_nothing_is_lost() {
         let line: String = (0..60).map(|word| format!("word{word} ")).collect();
-        let lines = wrapped(line.trim());
+        let lines = wrapped(line.trim(), LINE);
         assert!(lines.len() > 4 && lines.iter().all(|line| line.len() <= LINE));
         let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(words(&lines.join(" ")), words(&line));
-        assert_eq!(wrapped("short"), ["short"]);
+        assert_eq!(wrapped("short", LINE), ["short"]);
     }
 
     #[test]

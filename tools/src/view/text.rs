@@ -34,6 +34,11 @@ impl Text {
         Some(text)
     }
 
+    /// How many letters stand side by side in so many pixels.
+    pub fn letters(width: u32, scale: u32) -> usize {
+        ((width / scale.max(1)) as usize).saturating_sub(2 * GAP) / DOTS
+    }
+
     fn write(&mut self, letter: char, [left, top]: [usize; 2], scale: usize) {
         let glyph = BASIC_LEGACY.get(letter as usize).unwrap_or(&BASIC_LEGACY[b'?' as usize]);
         let width = self.size[0] as usize;
@@ -63,6 +68,16 @@ mod tests {
         assert_eq!(ink(&of(" ", 1)), 0);
         assert_eq!(ink(&of("\u{1f600}", 1)), ink(&of("?", 1)), "what the font lacks");
         assert_eq!(of("AB", 2).size, [2 * (16 + 6), 2 * (8 + 6)]);
+    }
+
+    #[test]
+    fn as_many_letters_as_fit_do_fit() {
+        for (width, scale) in [(640, 1), (633, 2), (9, 3)] {
+            let letters = Text::letters(width, scale);
+            let text = |letters: usize| Text::of(&["x".repeat(letters)], scale);
+            assert!(text(letters).is_none_or(|text| text.size[0] <= width));
+            assert!(text(letters + 1).unwrap().size[0] > width);
+        }
     }
 
     #[test]
