@@ -62,6 +62,20 @@ pub enum Command {
     Scene(SceneArgs),
     /// Lists devices, and says what the chosen one has and lacks
     Info(DeviceArgs),
+    /// Prints what makes a shell complete commands, flags and their values
+    #[command(
+        after_help = "For example:\n  sightline completions bash > ~/.local/share/bash-completion/completions/sightline\n  sightline completions zsh > \"${fpath[1]}/_sightline\"\n  sightline completions fish > ~/.config/fish/completions/sightline.fish"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Prints the manual page, of the program or of one command
+    #[command(after_help = "For example:\n  sightline man bench > sightline-bench.1 && man ./sightline-bench.1")]
+    Man {
+        /// The command; the program itself if left out
+        command: Option<String>,
+    },
 }
 
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
