@@ -1,6 +1,6 @@
 //! `sightline view`: a window in which a scene is flown through under any method.
 //!
-//! What keys and mouse change is plain data ([`controls`], [`camera`]), what is drawn needs no window ([`lab`]), and only [`app`] knows
+//! What keys and mouse change is plain data ([`controls`], [`camera`]), what is drawn needs no window ([`lab`]), and only `app` knows
 //! the window system.
 
 mod app;
