@@ -1,6 +1,7 @@
 //! The command line.
 
 mod compare;
+mod config;
 mod device;
 mod methods;
 mod stress;
@@ -8,6 +9,7 @@ mod sweep;
 mod view;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
+pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
 pub use methods::{parse_methods, parse_setting};
 pub use stress::{StressArgs, STRESS_HELP};
@@ -37,6 +39,10 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Takes flags from a TOML file, such as sightline.toml: a table for each command, a key for each flag ([bench] frames = 60). What
+    /// is typed counts instead
+    #[arg(long, value_name = "FILE", global = true)]
+    pub config: Option<PathBuf>,
 }
 
 /// The commands.
