@@ -6,7 +6,7 @@
 set -euo pipefail
 
 case ${1-} in
-    bench | report | view | shot | stress | scene | compare | info | help | -h | --help | -V | --version) arguments=("$@") ;;
+    bench | report | view | shot | stress | scene | compare | info | completions | man | help | -h | --help | -V | --version) arguments=("$@") ;;
     *) arguments=(bench "$@") ;;
 esac
 

@@ -6,7 +6,8 @@
 set -euo pipefail
 
 tools=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-"$tools/setup.sh"
+# The tests of `sightline view` open windows on a virtual display.
+"$tools/setup.sh" --windows
 
 if [[ -z ${SIGHTLINE_TEST_DEVICE-} ]]; then
     for manifest in /usr/share/vulkan/icd.d/lvp_icd.*.json /usr/local/share/vulkan/icd.d/lvp_icd.*.json; do

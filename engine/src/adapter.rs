@@ -120,6 +120,17 @@ pub(crate) fn check_depth(
     })
 }
 
+/// An error if the device cannot show pictures in windows.
+pub(crate) fn check_windows(instance: &Instance, device: vk::PhysicalDevice, info: &AdapterInfo) -> Result<()> {
+    // SAFETY: the device handle comes from this instance.
+    let extensions = unsafe { instance.raw.enumerate_device_extension_properties(device) }
+        .named("vkEnumerateDeviceExtensionProperties")?;
+    if extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(ash::khr::swapchain::NAME)) {
+        return Ok(());
+    }
+    Err(Error::MissingFeatures { device: info.name.clone(), missing: "VK_KHR_swapchain (windows)".to_owned() })
+}
+
 fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> AdapterInfo {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();

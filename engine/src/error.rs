@@ -89,6 +89,14 @@ pub enum Error {
     /// There is no device: the engine records only.
     #[error("this engine only records frames (it was made without a device)")]
     RecordingOnly,
+    /// The device or the loader cannot show pictures in this window.
+    #[error("device '{device}' cannot show pictures in this window: {why}; choose another device with --device (see `sightline info`), or use `sightline shot`")]
+    Window {
+        /// The device's name.
+        device: String,
+        /// What is missing.
+        why: String,
+    },
     /// A frame capture could not be made.
     #[error("RenderDoc: {0}; install renderdoc and run again, or leave --capture out")]
     Capture(String),

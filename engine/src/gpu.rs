@@ -31,6 +31,8 @@ pub struct GpuOptions {
     pub barrier_every_stage: bool,
     /// How depth is kept.
     pub depth: DepthFormat,
+    /// Ask for what a [`crate::Window`] needs. A device without it is refused.
+    pub windows: bool,
 }
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
@@ -62,6 +64,9 @@ pub(crate) struct Vulkan {
     pub(crate) queries: QueryStore,
     pub(crate) frames_alive: AtomicUsize,
     pub(crate) statistics: bool,
+    pub(crate) physical: vk::PhysicalDevice,
+    pub(crate) family: u32,
+    pub(crate) windows: bool,
     timer: OnceLock<TimerMode>,
     pub(crate) instance: Instance,
 }
@@ -77,12 +82,15 @@ impl Gpu {
         let instance = Instance::new(options)?;
         let (physical, info) = adapter::choose(&instance, options.device.as_deref())?;
         adapter::check_depth(&instance, physical, &info, options.depth)?;
+        if options.windows {
+            adapter::check_windows(&instance, physical, &info)?;
+        }
         let family = graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
             device: info.name.clone(),
             missing: "a queue for graphics and compute".to_owned(),
         })?;
         let statistics = info.optional.iter().any(|(name, present, _)| *name == "pipelineStatisticsQuery" && *present);
-        let device = create_device(&instance.raw, physical, family, statistics)?;
+        let device = create_device(&instance.raw, physical, family, statistics, options.windows)?;
         let vulkan = Vulkan::new(instance, physical, device, family, info, statistics, options)?;
         let gpu = Gpu(Arc::new(Inner {
             vulkan: Some(vulkan),
@@ -187,6 +195,7 @@ fn create_device(
     physical: vk::PhysicalDevice,
     family: u32,
     statistics: bool,
+    windows: bool,
 ) -> Result<ash::Device> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
@@ -205,7 +214,8 @@ fn create_device(
         .maintenance4(true)
         .subgroup_size_control(true)
         .compute_full_subgroups(true);
-    let extensions = [ash::khr::push_descriptor::NAME.as_ptr()];
+    let swapchain = windows.then_some(ash::khr::swapchain::NAME.as_ptr());
+    let extensions: Vec<_> = [ash::khr::push_descriptor::NAME.as_ptr()].into_iter().chain(swapchain).collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
@@ -263,6 +273,9 @@ impl Vulkan {
             queries: QueryStore::default(),
             frames_alive: AtomicUsize::new(0),
             statistics,
+            physical,
+            family,
+            windows: options.windows,
             timer: OnceLock::new(),
             instance,
             device,

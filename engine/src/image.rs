@@ -115,6 +115,16 @@ impl Image {
         Ok(if self.format == Format::Depth { self.gpu.depth().reversed(texels) } else { texels })
     }
 
+    /// Writes all pixels of a colour image, row by row from the top, now; the device must be idle (between frames).
+    ///
+    /// # Panics
+    /// If it holds no colours, or another number of pixels.
+    pub fn write(&mut self, pixels: &[[u8; 4]]) -> Result<()> {
+        assert_eq!(self.format, Format::Colour, "only colours are written");
+        assert_eq!(pixels.len(), self.size[0] as usize * self.size[1] as usize, "an image has all its pixels");
+        self.gpu.stage_to_image(self.raw, self.format, self.size, pixels.as_flattened())
+    }
+
     fn create(&mut self, vulkan: &Vulkan, name: &str) -> Result<()> {
         let attachment = match self.format {
             Format::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,

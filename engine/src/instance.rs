@@ -9,13 +9,23 @@ use std::sync::Arc;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
+/// What makes windows into surfaces, by window system.
+const SURFACES: [&CStr; 6] = [
+    ash::khr::surface::NAME,
+    ash::khr::xlib_surface::NAME,
+    ash::khr::xcb_surface::NAME,
+    ash::khr::wayland_surface::NAME,
+    ash::khr::win32_surface::NAME,
+    ash::ext::metal_surface::NAME,
+];
+
 /// An instance with its message collector. Dropped last of all Vulkan objects.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     pub(crate) messages: Arc<Messages>,
     pub(crate) validating: bool,
     messenger: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
-    _entry: ash::Entry,
+    pub(crate) entry: ash::Entry,
 }
 
 impl Instance {
@@ -30,9 +40,9 @@ impl Instance {
             return Err(Error::NoValidation);
         }
         let messages = Arc::new(Messages::default());
-        let raw = create(&entry, options.validation)?;
+        let raw = create(&entry, options)?;
         let messenger = if options.validation { Some(create_messenger(&entry, &raw, &messages)?) } else { None };
-        Ok(Instance { raw, messages, validating: options.validation, messenger, _entry: entry })
+        Ok(Instance { raw, messages, validating: options.validation, messenger, entry })
     }
 }
 
@@ -48,7 +58,8 @@ impl Drop for Instance {
     }
 }
 
-fn create(entry: &ash::Entry, validation: bool) -> Result<ash::Instance> {
+fn create(entry: &ash::Entry, options: &GpuOptions) -> Result<ash::Instance> {
+    let validation = options.validation;
     let application = vk::ApplicationInfo::default()
         .application_name(c"sightline")
         .engine_name(c"sightline")
@@ -61,6 +72,11 @@ fn create(entry: &ash::Entry, validation: bool) -> Result<ash::Instance> {
     let labels = ash::ext::debug_utils::NAME;
     if validation || available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(labels)) {
         extensions.push(labels.as_ptr());
+    }
+    if options.windows {
+        // All kinds of windows that the loader knows: which one it will be is not known yet.
+        let known = |name: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name));
+        extensions.extend(SURFACES.iter().filter(|name| known(name)).map(|name| name.as_ptr()));
     }
     let layers = if validation { vec![VALIDATION_LAYER.as_ptr()] } else { Vec::new() };
     let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];

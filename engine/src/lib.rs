@@ -19,8 +19,10 @@ mod messages;
 mod pipeline;
 mod pipeline_cache;
 mod recorder;
+mod swapchain;
 mod timers;
 mod transfer;
+mod window;
 
 pub use adapter::{AdapterInfo, DeviceKind};
 pub use barriers::{Barrier, BarrierTracker, Point, Use};
@@ -36,6 +38,7 @@ pub use memory::{Buffer, Placement};
 pub use messages::Message;
 pub use recorder::{IndexedIndirect, Op, Primitives, Recorded, Recorder};
 pub use timers::TimerMode;
+pub use window::{Panel, Shown, Window};
 
 /// What the engine's calls return.
 pub type Result<T> = std::result::Result<T, Error>;

@@ -24,6 +24,11 @@ impl Messages {
         std::mem::take(&mut *self.lock())
     }
 
+    /// Forgets what was said with one of these words.
+    pub(crate) fn forget(&self, words: &[&str]) {
+        self.lock().retain(|message| !words.iter().any(|word| message.text.contains(word)));
+    }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Message>> {
         self.said.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }

@@ -81,6 +81,17 @@ impl Gpu {
         Ok(staging.bytes()?[..bytes].to_vec())
     }
 
+    pub(crate) fn stage_to_image(&self, to: vk::Image, format: Format, size: [u32; 2], bytes: &[u8]) -> Result<()> {
+        let vulkan = self.vulkan()?;
+        let mut staging = Staging::new(vulkan, bytes.len(), MemoryLocation::CpuToGpu)?;
+        staging.bytes()?[..bytes.len()].copy_from_slice(bytes);
+        let (from, region) = (staging.raw, whole_image(format, size));
+        vulkan.run_once(|device, commands| {
+            // SAFETY: the image is in the general layout and alive through the wait; the buffer holds all its texels.
+            unsafe { device.cmd_copy_buffer_to_image(commands, from, to, vk::ImageLayout::GENERAL, &[region]) };
+        })
+    }
+
     pub(crate) fn stage_from_image(&self, from: vk::Image, format: Format, size: [u32; 2]) -> Result<Vec<u8>> {
         let vulkan = self.vulkan()?;
         let bytes = size[0] as usize * size[1] as usize * format.texel_bytes(vulkan.depth);
@@ -144,6 +155,16 @@ impl Vulkan {
 
     /// Ends, submits, waits and frees the command buffer.
     pub(crate) fn run(&self, commands: vk::CommandBuffer) -> std::result::Result<(), vk::Result> {
+        self.run_between(commands, &[], &[])
+    }
+
+    /// The same, begun once the device has passed some semaphores and signalling others at its end.
+    pub(crate) fn run_between(
+        &self,
+        commands: vk::CommandBuffer,
+        after: &[vk::SemaphoreSubmitInfo<'_>],
+        before: &[vk::SemaphoreSubmitInfo<'_>],
+    ) -> std::result::Result<(), vk::Result> {
         let queue = lock(&self.queue);
         let pool = lock(&self.pool);
         // SAFETY: the command buffer is recording and comes from the pool; queue and pool are locked. It is freed only
@@ -152,7 +173,10 @@ impl Vulkan {
             self.device.end_command_buffer(commands)?;
             let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
             let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
-            let submits = [vk::SubmitInfo2::default().command_buffer_infos(&infos)];
+            let submits = [vk::SubmitInfo2::default()
+                .command_buffer_infos(&infos)
+                .wait_semaphore_infos(after)
+                .signal_semaphore_infos(before)];
             let done = self
                 .device
                 .queue_submit2(*queue, &submits, fence)

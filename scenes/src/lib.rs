@@ -26,5 +26,5 @@ pub use gltf::{import, import_bytes};
 pub use gltf_export::export_glb;
 pub use model::{Aabb, Mesh, Object, Scene, Topology, Walk};
 pub use open::open;
-pub use path::{record, CameraPath, PathKind, Shot};
+pub use path::{record, record_shots, CameraPath, PathKind, Shot};
 pub use procedural::SceneOptions;

@@ -8,7 +8,7 @@ mod street;
 mod viewpoint;
 mod way;
 
-pub use recorded::record;
+pub use recorded::{record, record_shots};
 pub(crate) use viewpoint::back_and_up;
 
 use crate::animation::Motion;

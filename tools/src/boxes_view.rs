@@ -54,6 +54,12 @@ pub fn first_person(picture: &Picture, view: &View, boxes: &TestedBoxes) -> Pict
     picture
 }
 
+/// Draws what a camera could see, as lines over what another sees.
+pub(crate) fn draw_view(picture: &mut Picture, session: &Session, eye: &View, seen: &View) {
+    let bounds = populated(session.world.host_bounds());
+    draw_volume(picture, eye, &view_volume(seen, &bounds));
+}
+
 fn draw_boxes(picture: &mut Picture, view: &View, boxes: &TestedBoxes) {
     boxes.singles.iter().for_each(|box_| draw_edges(picture, view, &corners(box_), SINGLE));
     boxes.groups.iter().for_each(|box_| draw_edges(picture, view, &corners(box_), GROUP));
@@ -69,7 +75,7 @@ fn draw_volume(picture: &mut Picture, sky: &View, volume: &[DVec3; 8]) {
 }
 
 /// Grey and dark, so that only lines have colour.
-fn dimmed(picture: &Picture) -> Picture {
+pub(crate) fn dimmed(picture: &Picture) -> Picture {
     let grey = |&[red, green, blue]: &[u8; 3]| {
         let sum = u16::from(red) + 2 * u16::from(green) + u16::from(blue);
         [(sum / 4 / 2) as u8; 3]

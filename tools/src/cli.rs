@@ -1,16 +1,20 @@
 //! The command line.
 
 mod compare;
+mod config;
 mod device;
 mod methods;
 mod stress;
 mod sweep;
+mod view;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
+pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
 pub use methods::{parse_methods, parse_setting};
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
+pub use view::{view_help, ViewArgs};
 
 use crate::session::SessionOptions;
 use crate::tables::TABLES;
@@ -35,6 +39,10 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Takes flags from a TOML file, such as sightline.toml: a table for each command, a key for each flag ([bench] frames = 60). What
+    /// is typed counts instead
+    #[arg(long, value_name = "FILE", global = true)]
+    pub config: Option<PathBuf>,
 }
 
 /// The commands.
@@ -50,6 +58,9 @@ pub enum Command {
     Compare(CompareArgs),
     /// Renders one frame to a PNG: colour, depth, item buffer, overdraw, or the boxes that a method tested
     Shot(ShotArgs),
+    /// Opens a window to fly through a scene under any method: freeze culling, switch methods, see depth, overdraw, boxes, errors
+    #[command(after_help = view_help())]
+    View(ViewArgs),
     /// Runs the numeric catalogue and worlds by chance through every exact method: what is lost, and how near it was
     #[command(after_help = STRESS_HELP)]
     Stress(StressArgs),
@@ -57,6 +68,20 @@ pub enum Command {
     Scene(SceneArgs),
     /// Lists devices, and says what the chosen one has and lacks
     Info(DeviceArgs),
+    /// Prints what makes a shell complete commands, flags and their values
+    #[command(
+        after_help = "For example:\n  sightline completions bash > ~/.local/share/bash-completion/completions/sightline\n  sightline completions zsh > \"${fpath[1]}/_sightline\"\n  sightline completions fish > ~/.config/fish/completions/sightline.fish"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Prints the manual page, of the program or of one command
+    #[command(after_help = "For example:\n  sightline man bench > sightline-bench.1 && man ./sightline-bench.1")]
+    Man {
+        /// The command; the program itself if left out
+        command: Option<String>,
+    },
 }
 
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
@@ -101,13 +126,13 @@ pub struct SceneChoice {
 #[derive(Args, Clone, Debug)]
 pub struct MethodChoice {
     /// Methods, separated by commas, or `all`
-    #[arg(long, value_name = "A,B,C|all", default_value = "all", conflicts_with = "table")]
+    #[arg(long, value_name = "A,B,C|all", default_value = "all")]
     pub method: String,
     /// Sets a method's option; may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
     pub set: Vec<String>,
     /// Leave out what is smaller on the screen than PX pixels, in all methods but none and ref: their option `detail`
-    #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "table")]
+    #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub detail: u32,
 }
 
@@ -133,7 +158,7 @@ pub struct BenchArgs {
     /// Runs a published table on the scenes (city-block and rooms, unless --scene names some, separated by commas) and
     /// prints its figures beside ours. The table chooses methods and settings; the path is its paper's, the whole of
     /// closing-in (eovc-*) or a walk (woc-*, tog-*), unless --path names another
-    #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["capture", "json"])]
+    #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["method", "detail", "capture", "json"])]
     pub table: Option<String>,
     /// Sweeps of options.
     #[command(flatten)]

@@ -22,5 +22,6 @@ pub mod tables;
 pub mod targets;
 pub mod trace;
 pub mod truth;
+pub mod view;
 pub mod warp_errors;
 pub mod warp_view;

@@ -4,7 +4,7 @@ use crate::targets::Targets;
 use anyhow::{bail, Context, Result};
 use culling::{View, World};
 use engine::{Gpu, GpuOptions};
-use scenes::{CameraPath, Scene, SceneOptions};
+use scenes::{CameraPath, Scene, SceneOptions, Shot};
 use std::path::{Path, PathBuf};
 
 /// What a session is opened with.
@@ -106,8 +106,22 @@ impl Session {
     /// Puts moving objects where they are in a frame, and gives what the frame looks through.
     pub fn look(&mut self, frame: usize) -> Result<View> {
         let shot = self.path.sample(frame, self.options.frames);
+        self.look_through(&shot, frame)
+    }
+
+    /// The same through a camera that is on no path; `frame` is what the view is numbered with.
+    pub fn look_through(&mut self, shot: &Shot, frame: usize) -> Result<View> {
         self.world.set_time(&self.scene, shot.seconds)?;
-        Ok(View::new(&shot, self.options.size, frame, self.gpu.snap_px()))
+        Ok(View::new(shot, self.options.size, frame, self.gpu.snap_px()))
+    }
+
+    /// Draws pictures of another size from now on.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        if size != self.options.size {
+            self.targets = Targets::new(&self.gpu, size)?;
+            self.options.size = size;
+        }
+        Ok(())
     }
 
     /// SHA-256 of the scene as loaded, in hexadecimal.

@@ -22,6 +22,11 @@ impl Targets {
         })
     }
 
+    /// The picture that frames draw.
+    pub fn colour(&self) -> &Image {
+        &self.colour
+    }
+
     /// What timed frames draw to: colour and depth.
     pub fn timed(&self) -> Target {
         Target {

@@ -3,7 +3,7 @@
 use crate::metrics::{FrameImages, Truth};
 use crate::session::Session;
 use anyhow::{Context, Result};
-use culling::VisibleSets;
+use culling::{View, VisibleSets};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,12 +20,17 @@ pub struct RunTruth {
 /// Draws everything, with the item buffer, and reads the pictures back.
 pub fn draw_everything(session: &mut Session, frame: usize) -> Result<FrameImages> {
     let view = session.look(frame)?;
+    draw_all_of(session, &view).with_context(|| format!("drawing the truth of frame {frame}"))
+}
+
+/// The same through a view, of objects where they are now.
+pub fn draw_all_of(session: &Session, view: &View) -> Result<FrameImages> {
     let target = session.targets.with_items();
     let mut f = session.gpu.frame();
     session.world.update(&mut f);
     f.clear(&target);
-    session.world.draw_all(&mut f, &view, &target);
-    f.finish().with_context(|| format!("drawing the truth of frame {frame}"))?;
+    session.world.draw_all(&mut f, view, &target);
+    f.finish()?;
     Ok(session.targets.read()?)
 }
 

@@ -1,6 +1,6 @@
 //! Pictures of depth warping: a frame's depth as predicted from the frame before, next to what is then drawn.
 
-use crate::metrics::{DepthErrors, NOTICED};
+use crate::metrics::{DepthErrors, FrameImages, NOTICED};
 use crate::png_out::{DepthScale, Picture};
 use crate::run::{Contender, Watched};
 use crate::session::Session;
@@ -56,22 +56,9 @@ pub fn warp(session: &mut Session, contender: &mut Contender, frame: usize, sett
         warp.frame(&mut f, &session.world, &view, warped.all())?;
         reports.push(f.finish().context("depth warping")?);
     }
-    let motions = warp.read_motions()?;
-    // Holes, which are farther than far, are shown as far.
-    let depth = warped.read()?.into_iter().map(|depth| depth.max(DEPTH_FAR)).collect();
     contender.run(session, &view, Watched::Items)?;
     let images = session.targets.read()?;
-    let scale = DepthScale::of(&images.depth);
-    Ok(Warped {
-        texels: warp.texels(),
-        reduction: settings.reduction,
-        size: view.size,
-        motions,
-        depth,
-        truth: farthest_of_blocks(&images.depth, view.size, settings.reduction),
-        scale,
-        stages: median(&reports),
-    })
+    Warped::of(&warp, &warped, settings, &images, median(&reports))
 }
 
 /// Each stage's median time: the first use of a stage includes compiling it, and others are disturbed by what else runs.
@@ -96,6 +83,28 @@ pub(crate) fn farthest_of_blocks(depth: &[f32], [width, height]: [u32; 2], reduc
 }
 
 impl Warped {
+    /// What a warp made of the frame before, beside the frame that was then drawn.
+    pub(crate) fn of(
+        warp: &Warp,
+        warped: &Buffer<f32>,
+        settings: Settings,
+        images: &FrameImages,
+        stages: Vec<(String, f64)>,
+    ) -> Result<Self> {
+        let size = [images.width, images.height];
+        Ok(Warped {
+            texels: warp.texels(),
+            reduction: settings.reduction,
+            size,
+            motions: warp.read_motions()?,
+            // Holes, which are farther than far, are shown as far.
+            depth: warped.read()?.into_iter().map(|depth| depth.max(DEPTH_FAR)).collect(),
+            truth: farthest_of_blocks(&images.depth, size, settings.reduction),
+            scale: DepthScale::of(&images.depth),
+            stages,
+        })
+    }
+
     /// How far the warp is from the truth, on the scale of its pictures.
     ///
     /// # Errors

@@ -30,15 +30,24 @@ pub(super) struct Recording {
 /// # Errors
 /// If a frame's projection is not a perspective: the format has no others.
 pub fn record(path: &CameraPath, frames: usize) -> Result<String, SceneError> {
-    let frames: Result<Vec<Value>, SceneError> = (0..frames).map(|frame| frame_value(path, frame, frames)).collect();
+    let shots: Vec<Shot> = (0..frames).map(|frame| path.sample(frame, frames)).collect();
+    record_shots(path.name(), &shots)
+}
+
+/// The same of shots from anywhere: of a camera that was flown by hand. `name` is for errors.
+///
+/// # Errors
+/// If a shot's projection is not a perspective.
+pub fn record_shots(name: &str, shots: &[Shot]) -> Result<String, SceneError> {
+    let frames: Result<Vec<Value>, SceneError> = shots.iter().map(|shot| frame_value(name, shot)).collect();
     Ok(json!({ "schema": 1, "frames": frames? }).to_string())
 }
 
-fn frame_value(path: &CameraPath, frame: usize, frames: usize) -> Result<Value, SceneError> {
-    let Shot { pose, projection, seconds } = path.sample(frame, frames);
+fn frame_value(name: &str, shot: &Shot) -> Result<Value, SceneError> {
+    let Shot { pose, projection, seconds } = *shot;
     let Projection::Perspective { fov_y, near, far } = projection else {
         return Err(SceneError::Unsupported {
-            path: path.name().into(),
+            path: name.into(),
             what: "recording a camera without perspective".into(),
             remedy: "; choose a path with another camera".into(),
         });

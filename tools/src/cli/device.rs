@@ -63,6 +63,7 @@ impl DeviceArgs {
                 DepthChoice::D24 => DepthFormat::D24,
                 DepthChoice::D16 => DepthFormat::D16,
             },
+            windows: false,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod bench;
 mod compare;
 mod info;
+mod manual;
 mod report;
 mod scene;
 mod shot;
@@ -43,15 +44,23 @@ pub fn run(cli: Cli) -> Result<()> {
         },
         Command::Report(arguments) => report::run(&arguments),
         Command::Shot(arguments) => shot::run(&arguments),
+        Command::View(arguments) => crate::view::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { command } => manual::page(command.as_deref()),
     }
 }
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.
 pub(crate) fn say(text: &str) -> Result<()> {
-    match writeln!(std::io::stdout(), "{text}") {
+    put(format!("{text}\n").as_bytes())
+}
+
+/// The same, of bytes as they are.
+pub(crate) fn put(bytes: &[u8]) -> Result<()> {
+    match std::io::stdout().write_all(bytes) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

@@ -1,0 +1,79 @@
+//! What `sightline view` shows, without a window: the laws of its pictures. Windows are tested in `tools/tests/view.rs`.
+
+use culling::{Guarantee, METHODS};
+use engine::Gpu;
+use harness::device;
+use scenes::{CameraPath, Scene, SceneOptions, Shot};
+use sightline::session::SessionOptions;
+use sightline::view::camera::FlyCamera;
+use sightline::view::controls::{Controls, Show};
+use sightline::view::lab::Lab;
+
+const FRAMES: usize = 6;
+
+fn open(gpu: &Gpu, scene: &str, scale: f64) -> (Lab, Controls, CameraPath) {
+    let options = SceneOptions { scale, ..SceneOptions::default() };
+    let scene: Scene = scenes::open(scene, &options).unwrap();
+    let path = CameraPath::named(&scene, Some("rotate"), 8.0).unwrap();
+    let camera = FlyCamera::new(&scene, &path.sample(0, FRAMES).pose);
+    let methods: Vec<_> = METHODS.iter().map(|entry| (entry, entry.default_options())).collect();
+    let controls = Controls::new(camera, methods.len());
+    let options = SessionOptions { size: [320, 180], ..SessionOptions::default() };
+    (Lab::new(gpu, scene, options, methods).unwrap(), controls, path)
+}
+
+fn shown(lab: &mut Lab, controls: &Controls, shot: &Shot) -> Vec<u8> {
+    lab.frame(controls, shot).unwrap_or_else(|error| panic!("{}: {error:#}", lab.label()));
+    lab.picture().read().unwrap()
+}
+
+#[test]
+fn every_exact_method_shows_what_is_shown_without_culling() {
+    let gpu = device::gpu();
+    for (scene, scale) in [("city-block", 0.02), ("moving-boxes", 1.0)] {
+        let (mut lab, mut controls, path) = open(&gpu, scene, scale);
+        for (place, entry) in METHODS.iter().enumerate() {
+            controls.method = place;
+            for frame in 0..FRAMES {
+                let shot = path.sample(frame, FRAMES);
+                controls.culling = true;
+                let culled = shown(&mut lab, &controls, &shot);
+                assert_eq!(lab.label(), entry.id);
+                // Nothing is culled every other frame only, so that the method has a past.
+                if frame % 2 == 1 && entry.guarantee == Guarantee::Exact {
+                    controls.culling = false;
+                    let all = shown(&mut lab, &controls, &shot);
+                    assert_eq!(lab.label(), "none");
+                    assert!(culled == all, "{scene}: {} shows something else in frame {frame}", entry.id);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn frozen_lists_show_the_same_objects_to_the_same_eye_and_stay_as_they_are() {
+    let gpu = device::gpu();
+    for entry in METHODS.iter().filter(|entry| entry.guarantee == Guarantee::Exact) {
+        let (mut lab, mut controls, path) = open(&gpu, "city-block", 0.02);
+        controls.method = METHODS.iter().position(|other| other.id == entry.id).unwrap();
+        controls.show = Show::Items;
+        let [shot, elsewhere] = [1, 4].map(|frame| path.sample(frame, FRAMES));
+        shown(&mut lab, &controls, &path.sample(0, FRAMES));
+        let live = shown(&mut lab, &controls, &shot);
+        controls.frozen = true;
+        let frozen = shown(&mut lab, &controls, &shot);
+        let away = shown(&mut lab, &controls, &elsewhere);
+        assert!(shown(&mut lab, &controls, &shot) == frozen, "{}: a frozen list changed", entry.id);
+        // White lines of the frozen view volume lie over a few pixels.
+        let differing = live.chunks(4).zip(frozen.chunks(4)).filter(|(live, frozen)| live != frozen).count();
+        assert!(differing < live.len() / 4 / 20, "{}: {differing} pixels differ", entry.id);
+        controls.frozen = false;
+        let thawed = shown(&mut lab, &controls, &elsewhere);
+        if entry.id == "none" {
+            assert!(away.chunks(4).zip(thawed.chunks(4)).filter(|(a, b)| a != b).count() < 5000, "none culls nothing");
+        } else {
+            assert!(away != thawed, "{}: from elsewhere, what was culled is not there", entry.id);
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! A scene under a method, frame by frame: what the window shows, without the window.
+
+use super::controls::{Controls, Show};
+use super::pictures::{self, Warping};
+use crate::metrics::{compare, FrameError, FrameImages, Truth};
+use crate::png_out::Picture;
+use crate::run::{Contender, Watched};
+use crate::session::{Session, SessionOptions};
+use crate::truth::draw_all_of;
+use anyhow::{Context, Result};
+use culling::{drawn_objects, Drawn, Entry, Options, View, VisibleSets};
+use engine::{Format, FrameReport, Gpu, Image};
+use scenes::{Scene, Shot};
+use std::sync::Arc;
+
+/// One frame in so many is run with stage timers, and its lists are read back: both make it slower.
+const WATCH_EVERY: u64 = 8;
+
+/// What ran last, and what it drew.
+pub(super) struct Ran {
+    pub(super) view: View,
+    pub(super) report: FrameReport,
+    pub(super) drawn: Option<Drawn>,
+}
+
+/// What is known of the method that runs, each as of when it was last measured.
+#[derive(Default)]
+pub(super) struct Known {
+    /// Milliseconds of a frame, and whether nothing slowed it down.
+    pub(super) frame_ms: Option<(f64, bool)>,
+    /// Each stage and its milliseconds.
+    pub(super) stages: Vec<(String, f64)>,
+    /// Objects drawn.
+    pub(super) drawn: Option<usize>,
+    /// Against the truth.
+    pub(super) error: Option<FrameError>,
+    /// What there is to say of the view.
+    pub(super) caption: String,
+}
+
+/// A scene under a method.
+pub struct Lab {
+    pub(super) session: Session,
+    methods: Vec<(&'static Entry, Options)>,
+    /// Its place among the methods; none: no culling.
+    running: Option<(Option<usize>, Contender)>,
+    pub(super) ran: Option<Ran>,
+    pub(super) truth: Option<Truth>,
+    pub(super) warping: Option<Warping>,
+    pub(super) known: Known,
+    composed: Option<Image>,
+    frames: u64,
+}
+
+impl Lab {
+    /// A scene on a device, in pictures of `options.size`.
+    pub fn new(
+        gpu: &Gpu,
+        scene: Scene,
+        options: SessionOptions,
+        methods: Vec<(&'static Entry, Options)>,
+    ) -> Result<Self> {
+        Ok(Lab {
+            session: Session::with_scene(gpu, scene, options)?,
+            methods,
+            running: None,
+            ran: None,
+            truth: None,
+            warping: None,
+            known: Known::default(),
+            composed: None,
+            frames: 0,
+        })
+    }
+
+    /// Gives everything on the device back, and the scene.
+    pub fn into_scene(self) -> Scene {
+        self.session.scene
+    }
+
+    /// Draws in another size from now on.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        if size != self.session.options().size {
+            self.session.resize(size)?;
+            // Lists of another size are no longer those of this picture.
+            (self.ran, self.truth, self.warping, self.composed) = (None, None, None, None);
+        }
+        Ok(())
+    }
+
+    /// The camera jumps: what the method knows of earlier frames is forgotten.
+    pub fn forget(&mut self) -> Result<()> {
+        self.warping = None;
+        Ok(self.running.as_mut().map_or(Ok(()), |(_, contender)| contender.method.forget())?)
+    }
+
+    /// The method that runs, by its label.
+    pub fn label(&self) -> String {
+        self.running.as_ref().map_or(String::new(), |(_, contender)| contender.label())
+    }
+
+    /// The method that runs.
+    pub(super) fn contender(&self) -> Option<&Contender> {
+        self.running.as_ref().map(|(_, contender)| contender)
+    }
+
+    /// Draws one frame as the controls have it; [`Lab::picture`] is then what to show.
+    pub fn frame(&mut self, controls: &Controls, shot: &Shot) -> Result<()> {
+        let frozen = if controls.frozen { self.ran.as_ref().map(|ran| ran.view) } else { None };
+        self.known.caption.clear();
+        let composed = match frozen {
+            Some(seen) => Some(self.frozen_frame(controls, shot, &seen)?),
+            None => self.live_frame(controls, shot)?,
+        };
+        match composed {
+            Some(picture) => self.compose(&picture)?,
+            None => self.composed = None,
+        }
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// What the last frame is to show.
+    pub fn picture(&self) -> &Image {
+        self.composed.as_ref().unwrap_or(self.session.targets.colour())
+    }
+
+    /// The method draws what it does not cull. None: the picture is on the device as it is to be shown.
+    fn live_frame(&mut self, controls: &Controls, shot: &Shot) -> Result<Option<Picture>> {
+        let view = self.session.look_through(shot, 0)?;
+        let needs_truth = controls.truth || controls.show == Show::FalsePositives;
+        self.ready(controls, &view)?;
+        let plain = controls.show == Show::Colour && !needs_truth;
+        let watched = match (plain, self.frames % WATCH_EVERY) {
+            (false, _) => Watched::Items,
+            (true, 0) => Watched::Stages,
+            (true, _) => Watched::Nothing,
+        };
+        self.run(&view, watched)?;
+        if plain {
+            self.truth = None;
+            self.known.error = None;
+            return Ok(None);
+        }
+        let images = self.session.targets.read()?;
+        let picture = pictures::of(self, controls, &view, &images)?;
+        if needs_truth {
+            self.compare(&view, &images)?;
+        } else {
+            (self.truth, self.known.error) = (None, None);
+        }
+        let picture = match controls.show {
+            Show::FalsePositives => pictures::false_positives(self, &view, &images),
+            _ => picture,
+        };
+        Ok(Some(picture))
+    }
+
+    /// The lists that were drawn through `seen`, drawn again as the eye sees them, and what `seen` covers in lines.
+    fn frozen_frame(&mut self, controls: &Controls, shot: &Shot, seen: &View) -> Result<Picture> {
+        // Objects stay where they were when culling was frozen.
+        let eye = View::new(shot, self.session.options().size, 0, self.session.gpu.snap_px());
+        let target = self.session.targets.with_items();
+        let ran = self.ran.as_ref().context("nothing was drawn yet")?;
+        let mut f = self.session.gpu.frame();
+        f.clear(&target);
+        self.session.world.draw_again(&mut f, &ran.report.draws, &eye, &target);
+        f.finish().context("drawing frozen lists")?;
+        let images = self.session.targets.read()?;
+        let mut picture = match controls.show {
+            Show::FalsePositives => pictures::false_positives(self, &eye, &images),
+            _ => pictures::of(self, controls, &eye, &images)?,
+        };
+        crate::boxes_view::draw_view(&mut picture, &self.session, &eye, seen);
+        Ok(picture)
+    }
+
+    /// Makes the method that the controls ask for, if it is another one. `ref` is made anew for each view: it has to know beforehand
+    /// what that shows.
+    fn ready(&mut self, controls: &Controls, view: &View) -> Result<()> {
+        let wanted = controls.culling.then_some(controls.method);
+        let (entry, options) = match wanted.and_then(|method| self.methods.get(method)) {
+            Some((entry, options)) => (*entry, options.clone()),
+            None => {
+                let none = culling::find("none")?;
+                (none, none.default_options())
+            }
+        };
+        let is_ideal = entry.id == "ref";
+        let there = self.running.as_ref().is_some_and(|(place, _)| *place == wanted);
+        if there && !is_ideal {
+            return Ok(());
+        }
+        let visible = if is_ideal {
+            let mut sets = VisibleSets::new(self.session.world.len());
+            sets.push_items(&draw_all_of(&self.session, view)?.items);
+            Some(Arc::new(sets))
+        } else {
+            None
+        };
+        if !there {
+            self.known = Known::default();
+        }
+        // The one before gives its memory back first.
+        (self.running, self.ran) = (None, None);
+        let contender = Contender::new(&self.session, entry, options, &visible)?;
+        self.running = Some((wanted, contender));
+        Ok(())
+    }
+
+    fn run(&mut self, view: &View, watched: Watched) -> Result<()> {
+        let (_, contender) = self.running.as_mut().context("no method runs")?;
+        let report = contender.run(&self.session, view, watched)?;
+        self.known.frame_ms = match (watched, self.known.frame_ms) {
+            (Watched::Stages, Some(known)) => Some(known),
+            _ => Some((report.frame_ms, watched == Watched::Nothing)),
+        };
+        let mut drawn = None;
+        if watched != Watched::Nothing {
+            self.known.stages = report.stages.iter().map(|stage| (stage.label.clone(), stage.ms)).collect();
+            let found = drawn_objects(&self.session.gpu, &self.session.world, &report)?;
+            self.known.drawn = Some(found.objects.iter().filter(|drawn| **drawn).count());
+            drawn = Some(found);
+        }
+        self.ran = Some(Ran { view: *view, report, drawn });
+        Ok(())
+    }
+
+    fn compare(&mut self, view: &View, images: &FrameImages) -> Result<()> {
+        let truth =
+            Truth::new(draw_all_of(&self.session, view).context("drawing the truth")?, self.session.world.len())?;
+        let drawn = self.ran.as_ref().and_then(|ran| ran.drawn.as_ref()).context("what was drawn is not known")?;
+        self.known.error = Some(compare(&truth, images, &drawn.objects)?);
+        self.truth = Some(truth);
+        Ok(())
+    }
+
+    fn compose(&mut self, picture: &Picture) -> Result<()> {
+        let size = [picture.width, picture.height];
+        let fitting = self.composed.take().filter(|image| image.size() == size);
+        let mut image = match fitting {
+            Some(image) => image,
+            None => Image::new(&self.session.gpu, "view.composed", Format::Colour, size)?,
+        };
+        let pixels: Vec<[u8; 4]> = picture.pixels.iter().map(|&[red, green, blue]| [red, green, blue, 255]).collect();
+        image.write(&pixels)?;
+        self.composed = Some(image);
+        Ok(())
+    }
+}
