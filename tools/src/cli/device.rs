@@ -21,6 +21,9 @@ pub struct DeviceArgs {
     /// How depth is kept, to study what formats cost: bounds are derived for reversed D32, and methods are exact with it alone
     #[arg(long, value_name = "FORMAT", default_value = "d32")]
     pub depth_format: DepthChoice,
+    /// Do without these features, as if the device lacked them (`sightline info` lists them): each has a way around it
+    #[arg(long, value_name = "FEATURE,...", value_delimiter = ',')]
+    pub without: Vec<String>,
 }
 
 /// Formats of depth buffers.
@@ -63,6 +66,7 @@ impl DeviceArgs {
                 DepthChoice::D24 => DepthFormat::D24,
                 DepthChoice::D16 => DepthFormat::D16,
             },
+            without: self.without.clone(),
         }
     }
 }
