@@ -73,7 +73,8 @@ impl fmt::Display for AdapterInfo {
 pub(crate) fn list(instance: &Instance, without: &[String]) -> Result<Vec<(vk::PhysicalDevice, AdapterInfo)>> {
     // SAFETY: the instance is alive.
     let devices = unsafe { instance.raw.enumerate_physical_devices() }.named("vkEnumeratePhysicalDevices")?;
-    let mut found: Vec<_> = devices.into_iter().map(|device| (device, describe(&instance.raw, device, without))).collect();
+    let mut found: Vec<_> =
+        devices.into_iter().map(|device| (device, describe(&instance.raw, device, without))).collect();
     found.sort_by_key(|(_, info)| info.kind);
     Ok(found)
 }
@@ -155,7 +156,9 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[Str
     AdapterInfo {
         name: text(core.device_name_as_c_str()),
         kind: kind(core.device_type),
-        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())).trim().to_owned(),
+        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str()))
+            .trim()
+            .to_owned(),
         api: format!(
             "{}.{}.{}",
             vk::api_version_major(version),

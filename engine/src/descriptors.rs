@@ -87,8 +87,9 @@ impl Descriptors {
             // SAFETY: no set is in use, as the submissions before this one were waited for. A null pool holds nothing.
             return match pool.raw.is_null() {
                 true => Ok(()),
-                false => unsafe { device.reset_descriptor_pool(pool.raw, Default::default()) }
-                    .named("vkResetDescriptorPool"),
+                false => {
+                    unsafe { device.reset_descriptor_pool(pool.raw, Default::default()) }.named("vkResetDescriptorPool")
+                }
             };
         }
         let made = Pool::new(device, wanted.doubled())?;
@@ -117,10 +118,10 @@ impl Descriptors {
             }),
             Descriptors::Pooled(pool) => {
                 let layouts = [pipeline.set];
-                let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(lock(pool).raw).set_layouts(&layouts);
+                let info =
+                    vk::DescriptorSetAllocateInfo::default().descriptor_pool(lock(pool).raw).set_layouts(&layouts);
                 // SAFETY: `begin` made a pool with room for this submission's stages.
-                let sets =
-                    unsafe { device.allocate_descriptor_sets(&info) }.named("vkAllocateDescriptorSets")?;
+                let sets = unsafe { device.allocate_descriptor_sets(&info) }.named("vkAllocateDescriptorSets")?;
                 // SAFETY: the set is new, and the writes fit its layout, as both come from one reflection.
                 with_writes(stage, sets[0], |writes| unsafe { device.update_descriptor_sets(writes, &[]) });
                 // SAFETY: the set lives until the next submission begins.

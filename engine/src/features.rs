@@ -68,14 +68,18 @@ impl Extra {
 
     fn without(self) -> &'static str {
         match self {
-            Extra::DrawIndirectCount => "without it lists draw all they have room for, and engine/clear_tail empties what is behind their end",
+            Extra::DrawIndirectCount => {
+                "without it lists draw all they have room for, and engine/clear_tail empties what is behind their end"
+            }
             Extra::MultiDrawIndirect => "without it each command of a list is a call of its own",
             Extra::PushDescriptor => "without it stages bind descriptor sets from a pool that is reset each submission",
             Extra::SubgroupSizeControl => "without it prefix sums run on whatever subgroups the device makes",
             Extra::HostQueryReset => "without it queries are reset on the device",
             Extra::MappedMemory => "without it the host reads and writes buffers of stages through staging copies",
             Extra::Timestamps => "without it frames are timed and stages are not",
-            Extra::PipelineStatistics => "without it a frame has no counts of primitives and fragments (bench does not use them)",
+            Extra::PipelineStatistics => {
+                "without it a frame has no counts of primitives and fragments (bench does not use them)"
+            }
             Extra::DebugUtils => "without it stages and resources have no names in captures and messages",
         }
     }
@@ -138,8 +142,16 @@ pub(crate) fn find(
     let adds = subgroup.supported_operations.contains(vk::SubgroupFeatureFlags::ARITHMETIC)
         && subgroup.supported_stages.contains(vk::ShaderStageFlags::COMPUTE);
     let needed = [
-        ("drawIndirectFirstInstance", on(core.draw_indirect_first_instance), "every drawing: a command names its object by its first instance"),
-        ("fragmentStoresAndAtomics", on(core.fragment_stores_and_atomics), "drawings that set a flag for each object whose fragments they see"),
+        (
+            "drawIndirectFirstInstance",
+            on(core.draw_indirect_first_instance),
+            "every drawing: a command names its object by its first instance",
+        ),
+        (
+            "fragmentStoresAndAtomics",
+            on(core.fragment_stores_and_atomics),
+            "drawings that set a flag for each object whose fragments they see",
+        ),
         ("scalarBlockLayout", on(v12.scalar_block_layout), "every stage: buffers lie as their Rust structs do"),
         ("dynamicRendering", on(v13.dynamic_rendering), "every drawing and clear"),
         ("synchronization2", on(v13.synchronization2), "every barrier and submission"),

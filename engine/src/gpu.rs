@@ -80,11 +80,10 @@ impl Gpu {
         let instance = Instance::new(options)?;
         let (physical, info) = adapter::choose(&instance, options.device.as_deref(), &options.without)?;
         adapter::check_depth(&instance, physical, &info, options.depth)?;
-        let (family, _) =
-            adapter::graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
-                device: info.name.clone(),
-                missing: "a queue for graphics and compute".to_owned(),
-            })?;
+        let (family, _) = adapter::graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
+            device: info.name.clone(),
+            missing: "a queue for graphics and compute".to_owned(),
+        })?;
         let device = create_device(&instance.raw, physical, family, info.extras)?;
         let vulkan = Vulkan::new(instance, physical, device, family, info, options)?;
         let gpu = Gpu(Arc::new(Inner {

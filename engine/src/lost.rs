@@ -6,7 +6,12 @@ use crate::Error;
 use ash::vk;
 
 /// Turns a failed submission into an error; a lost device names the last stage that started.
-pub(crate) fn submit_error(vulkan: &Vulkan, result: vk::Result, pool: Option<vk::QueryPool>, ops: &[Recorded]) -> Error {
+pub(crate) fn submit_error(
+    vulkan: &Vulkan,
+    result: vk::Result,
+    pool: Option<vk::QueryPool>,
+    ops: &[Recorded],
+) -> Error {
     match result {
         vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { stage: last_started(&written(vulkan, pool, ops), ops) },
         result => Error::Vulkan { call: "vkQueueSubmit2", result },

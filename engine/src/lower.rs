@@ -1,9 +1,9 @@
 //! From recorded steps to a Vulkan command buffer.
 
 use crate::barriers::{Barrier, Point};
+use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::image::Target;
-use crate::features::Extra;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
 use crate::recorder::{IndexedIndirect, Op, Recorded};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};

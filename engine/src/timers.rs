@@ -3,9 +3,9 @@
 //! A timestamp says when the device got that far. A driver that batches work (lavapipe) gets that far before the work is
 //! done, and charges it to whoever flushes it; there a full barrier after each timestamp splits the stages properly.
 
-use crate::gpu::{lock, Gpu, Vulkan};
 use crate::features::Extra;
 use crate::frame::{StageTime, Statistics};
+use crate::gpu::{lock, Gpu, Vulkan};
 use crate::recorder::Recorded;
 use crate::{error::Named, Buffer, Format, Image, IndexedIndirect, Placement, Primitives, Result, Target};
 use ash::vk;
