@@ -47,6 +47,8 @@ pub struct AdapterInfo {
     pub max_image_px: u32,
     /// Largest storage buffer range in bytes.
     pub max_storage_bytes: u64,
+    /// Largest buffer of any use in bytes.
+    pub max_buffer_bytes: u64,
     /// Lanes of a subgroup.
     pub subgroup_size: u32,
     /// The grid that vertex positions are snapped to, pixels.
@@ -140,7 +142,11 @@ pub(crate) fn check_depth(
 fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[String]) -> AdapterInfo {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut subgroup);
+    let mut sizes = vk::PhysicalDeviceMaintenance4Properties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut driver)
+        .push_next(&mut subgroup)
+        .push_next(&mut sizes);
     // SAFETY: the device handle comes from this instance; the chain lives through the call.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let core = properties.properties;
@@ -177,6 +183,8 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[Str
             .min(limits.max_framebuffer_height)
             .min(limits.max_viewport_dimensions[0])
             .min(limits.max_viewport_dimensions[1]),
+        // 0: a layer in between does not know the property.
+        max_buffer_bytes: if sizes.max_buffer_size > 0 { sizes.max_buffer_size } else { u64::MAX },
         max_storage_bytes: u64::from(limits.max_storage_buffer_range),
         subgroup_size: subgroup.subgroup_size,
         snap_px: (0.5f32).powi(limits.sub_pixel_precision_bits as i32),

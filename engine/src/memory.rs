@@ -150,13 +150,17 @@ impl<T: Pod> Buffer<T> {
 }
 
 fn check_range(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Result<()> {
-    if placement == Placement::Geometry || bytes <= vulkan.info.max_storage_bytes {
+    let (most, of) = match placement {
+        Placement::Geometry => (vulkan.info.max_buffer_bytes, "in one buffer"),
+        _ => (vulkan.info.max_storage_bytes.min(vulkan.info.max_buffer_bytes), "in one storage buffer"),
+    };
+    if bytes <= most {
         return Ok(());
     }
     Err(Error::TooLarge {
         what: format!("buffer '{name}'"),
         wanted: format!("{bytes} bytes"),
-        limit: format!("{} bytes in one storage buffer", vulkan.info.max_storage_bytes),
+        limit: format!("{most} bytes {of}"),
         device: vulkan.info.name.clone(),
         remedy: "use a smaller --scale".to_owned(),
     })
