@@ -7,13 +7,15 @@ readonly RUST_NEEDED=1.86
 
 usage() {
     cat <<'END'
-Usage: tools/setup.sh [--windows] [--captures] [--shaders]
+Usage: tools/setup.sh [--windows] [--captures] [--shaders] [--swiftshader]
 
 Checks for what Sightline needs and installs what is missing (Debian and Ubuntu; elsewhere it says what to install).
 
   --windows   also a virtual display for the tests of `sightline view` (xvfb, xauth, imagemagick)
   --captures  also RenderDoc, for `--capture FRAME`
   --shaders   also what `cargo shaders` builds its compiler with (cmake, ninja, g++, git, python3)
+  --swiftshader
+              also SwiftShader, a second CPU device to test on, which comes with Debian's chromium (290 MB)
   -h, --help  this text
 END
 }
@@ -31,6 +33,7 @@ for argument in "$@"; do
         --windows) packages+=(xvfb xauth imagemagick) ;;
         --captures) packages+=(renderdoc) ;;
         --shaders) packages+=(cmake ninja-build g++ git python3) ;;
+        --swiftshader) packages+=(chromium) ;;
         -h | --help)
             usage
             exit 0
@@ -86,6 +89,7 @@ setup: this system has no apt-get, so please see to these yourself:
   elsewhere   a C linker, the Vulkan loader (libvulkan.so.1), a Vulkan 1.3 driver, the Khronos validation layers
   windows     Fedora: xorg-x11-server-Xvfb xauth ImageMagick; Arch: xorg-server-xvfb xorg-xauth imagemagick
   captures    renderdoc
+  swiftshader chromium, if it comes with vk_swiftshader_icd.json
   shaders     cmake ninja-build gcc-c++ git python3 (Arch: cmake ninja gcc git python)
 The tests of real glTF models read /usr/share/assimp/models (assimp's own test models).
 END

@@ -2,6 +2,7 @@
 
 use crate::depth::DepthFormat;
 use crate::error::Named;
+use crate::features::{self, Extra, Extras, Feature, Found};
 use crate::instance::Instance;
 use crate::{Error, Result};
 use ash::vk;
@@ -33,18 +34,29 @@ pub struct AdapterInfo {
     pub api: String,
     /// What Sightline needs and the device lacks; empty if it can be used.
     pub missing: Vec<String>,
-    /// What is used where present: (name, present, what it is for).
-    pub optional: Vec<(&'static str, bool, &'static str)>,
+    /// What every device must have, and who needs it.
+    pub needed: Vec<Feature>,
+    /// What is used where present, and what is done without.
+    pub optional: Vec<Feature>,
+    pub(crate) extras: Extras,
+    /// Commands that one call may draw.
+    pub(crate) most_draws: u32,
+    /// Storage buffers that one stage may bind.
+    pub(crate) most_buffers: u32,
     /// Largest image side in pixels.
     pub max_image_px: u32,
     /// Largest storage buffer range in bytes.
     pub max_storage_bytes: u64,
+    /// Largest buffer of any use in bytes.
+    pub max_buffer_bytes: u64,
     /// Lanes of a subgroup.
     pub subgroup_size: u32,
     /// The grid that vertex positions are snapped to, pixels.
     pub snap_px: f32,
     /// Nanoseconds a timestamp tick; 0 if there are no timestamps.
     pub timestamp_ns: f32,
+    /// Bits of a timestamp before it starts again at 0; 0 if there are no timestamps.
+    pub timestamp_bits: u32,
     /// Identifies driver and device for caches.
     pub cache_key: String,
 }
@@ -60,17 +72,23 @@ impl fmt::Display for AdapterInfo {
 }
 
 /// All devices, best first: discrete, integrated, virtual, CPU; within a sort in the driver's order.
-pub(crate) fn list(instance: &Instance) -> Result<Vec<(vk::PhysicalDevice, AdapterInfo)>> {
+pub(crate) fn list(instance: &Instance, without: &[String]) -> Result<Vec<(vk::PhysicalDevice, AdapterInfo)>> {
     // SAFETY: the instance is alive.
     let devices = unsafe { instance.raw.enumerate_physical_devices() }.named("vkEnumeratePhysicalDevices")?;
-    let mut found: Vec<_> = devices.into_iter().map(|device| (device, describe(&instance.raw, device))).collect();
+    let mut found: Vec<_> =
+        devices.into_iter().map(|device| (device, describe(&instance.raw, device, without))).collect();
     found.sort_by_key(|(_, info)| info.kind);
     Ok(found)
 }
 
-/// The device that `--device` names by index or by part of its name; the best usable one if it names none.
-pub(crate) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<(vk::PhysicalDevice, AdapterInfo)> {
-    let found = list(instance)?;
+/// The device that `--device` names by index or by part of its name, less what is to be done `without`; the best usable one if
+/// it names none.
+pub(crate) fn choose(
+    instance: &Instance,
+    wanted: Option<&str>,
+    without: &[String],
+) -> Result<(vk::PhysicalDevice, AdapterInfo)> {
+    let found = list(instance, without)?;
     if found.is_empty() {
         return Err(Error::NoDevice);
     }
@@ -96,6 +114,7 @@ pub(crate) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<(vk::P
     if !info.missing.is_empty() {
         return Err(Error::MissingFeatures { device: info.name, missing: info.missing.join(", ") });
     }
+    features::check_names(without, &info)?;
     Ok((device, info))
 }
 
@@ -131,23 +150,32 @@ pub(crate) fn check_windows(instance: &Instance, device: vk::PhysicalDevice, inf
     Err(Error::MissingFeatures { device: info.name.clone(), missing: "VK_KHR_swapchain (windows)".to_owned() })
 }
 
-fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> AdapterInfo {
+fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[String]) -> AdapterInfo {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut subgroup);
+    let mut sizes = vk::PhysicalDeviceMaintenance4Properties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut driver)
+        .push_next(&mut subgroup)
+        .push_next(&mut sizes);
     // SAFETY: the device handle comes from this instance; the chain lives through the call.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let core = properties.properties;
-    let version = core.api_version;
+    let (limits, version) = (core.limits, core.api_version);
     let text = |name: std::result::Result<&std::ffi::CStr, _>| {
         name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     };
-    let (missing, optional) = features(instance, device, version);
+    let bits = graphics_family(instance, device).map_or(0, |(_, family)| family.timestamp_valid_bits);
+    let Found { needed, optional, extras } = found(instance, device, version, bits, without);
+    let missing = needed.iter().filter(|feature| !feature.present).map(|feature| feature.name.to_owned()).collect();
+    let has = |extra| extras.has(extra);
     let cache_key = core.pipeline_cache_uuid.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     AdapterInfo {
         name: text(core.device_name_as_c_str()),
         kind: kind(core.device_type),
-        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())),
+        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str()))
+            .trim()
+            .to_owned(),
         api: format!(
             "{}.{}.{}",
             vk::api_version_major(version),
@@ -155,22 +183,47 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> AdapterInfo
             vk::api_version_patch(version)
         ),
         missing,
+        needed,
         optional,
-        max_image_px: core
-            .limits
+        extras,
+        most_draws: if has(Extra::MultiDrawIndirect) { limits.max_draw_indirect_count.max(1) } else { 1 },
+        most_buffers: limits.max_per_stage_descriptor_storage_buffers,
+        max_image_px: limits
             .max_image_dimension2_d
-            .min(core.limits.max_framebuffer_width)
-            .min(core.limits.max_framebuffer_height),
-        max_storage_bytes: u64::from(core.limits.max_storage_buffer_range),
+            .min(limits.max_framebuffer_width)
+            .min(limits.max_framebuffer_height)
+            .min(limits.max_viewport_dimensions[0])
+            .min(limits.max_viewport_dimensions[1]),
+        // 0: a layer in between does not know the property.
+        max_buffer_bytes: if sizes.max_buffer_size > 0 { sizes.max_buffer_size } else { u64::MAX },
+        max_storage_bytes: u64::from(limits.max_storage_buffer_range),
         subgroup_size: subgroup.subgroup_size,
-        snap_px: (0.5f32).powi(core.limits.sub_pixel_precision_bits as i32),
-        timestamp_ns: if core.limits.timestamp_compute_and_graphics == vk::TRUE {
-            core.limits.timestamp_period
-        } else {
-            0.0
-        },
+        snap_px: (0.5f32).powi(limits.sub_pixel_precision_bits as i32),
+        timestamp_ns: if has(Extra::Timestamps) { limits.timestamp_period } else { 0.0 },
+        timestamp_bits: if has(Extra::Timestamps) { bits } else { 0 },
         cache_key: format!("{cache_key}-{:08x}-{:08x}-{:08x}", core.vendor_id, core.device_id, core.driver_version),
     }
+}
+
+/// What the device has. Features decide, not the version: RenderDoc 1.24 says 1.2 of devices that it passes 1.3 through to.
+fn found(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32, bits: u32, without: &[String]) -> Found {
+    if version < vk::API_VERSION_1_2 {
+        let vulkan = Feature { name: "Vulkan 1.3", present: false, why: "everything" };
+        return Found { needed: vec![vulkan], optional: Vec::new(), extras: Extras::default() };
+    }
+    features::find(instance, device, bits, without)
+}
+
+/// The first queue family for graphics and compute: its index and properties.
+pub(crate) fn graphics_family(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+) -> Option<(u32, vk::QueueFamilyProperties)> {
+    // SAFETY: the handle comes from this instance.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let index = families.iter().position(|family| family.queue_flags.contains(wanted))?;
+    Some((index as u32, families[index]))
 }
 
 fn kind(kind: vk::PhysicalDeviceType) -> DeviceKind {
@@ -180,46 +233,4 @@ fn kind(kind: vk::PhysicalDeviceType) -> DeviceKind {
         vk::PhysicalDeviceType::CPU => DeviceKind::Cpu,
         _ => DeviceKind::Virtual,
     }
-}
-
-type Optional = Vec<(&'static str, bool, &'static str)>;
-
-/// What the device lacks, and which optional features it has.
-fn features(instance: &ash::Instance, device: vk::PhysicalDevice, version: u32) -> (Vec<String>, Optional) {
-    // Features decide, not the version: RenderDoc 1.24 says 1.2 of devices that it passes 1.3 through to.
-    if version < vk::API_VERSION_1_2 {
-        return (vec!["Vulkan 1.3".to_owned()], Vec::new());
-    }
-    let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut all = vk::PhysicalDeviceFeatures2::default().push_next(&mut v12).push_next(&mut v13);
-    // SAFETY: the device handle comes from this instance; the chain lives through the call.
-    unsafe { instance.get_physical_device_features2(device, &mut all) };
-    let core = all.features;
-    // SAFETY: as above.
-    let extensions = unsafe { instance.enumerate_device_extension_properties(device) }.unwrap_or_default();
-    let push_descriptor =
-        extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(ash::khr::push_descriptor::NAME));
-    let needed = [
-        ("multiDrawIndirect", core.multi_draw_indirect),
-        ("drawIndirectFirstInstance", core.draw_indirect_first_instance),
-        ("fragmentStoresAndAtomics", core.fragment_stores_and_atomics),
-        ("drawIndirectCount", v12.draw_indirect_count),
-        ("scalarBlockLayout", v12.scalar_block_layout),
-        ("hostQueryReset", v12.host_query_reset),
-        ("dynamicRendering", v13.dynamic_rendering),
-        ("synchronization2", v13.synchronization2),
-        ("maintenance4", v13.maintenance4),
-        ("subgroupSizeControl", v13.subgroup_size_control),
-        ("computeFullSubgroups", v13.compute_full_subgroups),
-        ("VK_KHR_push_descriptor", u32::from(push_descriptor)),
-    ];
-    let missing =
-        needed.iter().filter(|(_, present)| *present == vk::FALSE).map(|(name, _)| (*name).to_owned()).collect();
-    let optional = vec![(
-        "pipelineStatisticsQuery",
-        core.pipeline_statistics_query == vk::TRUE,
-        "primitive and fragment counts of a frame (not used by bench)",
-    )];
-    (missing, optional)
 }

@@ -30,6 +30,14 @@ pub enum Error {
         /// Features and extensions, separated by commas.
         missing: String,
     },
+    /// `--without` named nothing that can be turned off.
+    #[error("no feature is called '{wanted}'; --without takes {known}")]
+    NoSuchFeature {
+        /// What `--without` said.
+        wanted: String,
+        /// What it takes, separated by commas.
+        known: String,
+    },
     /// A resource is larger than the device allows.
     #[error("{what} needs {wanted}, but device '{device}' allows {limit}; {remedy}")]
     TooLarge {

@@ -1,15 +1,17 @@
 //! One frame: recorded stage by stage, run, timed.
 
 use crate::depth::DepthFormat;
+use crate::features::Extra;
 use crate::gpu::{Gpu, Vulkan};
 use crate::image::{Format, Target};
 use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
-use crate::timers::{Queries, TimerMode};
+use crate::timers::{self, Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
 use shaders::{engine, Bound, BufferRef, ComputeStage, GraphicsStage, ImageRef, Stage};
+use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -83,7 +85,7 @@ impl Frame {
             report: FrameReport::default(),
             queries: None,
             count_statistics: false,
-            timer: Some(gpu.timer_mode()),
+            timer: Some(gpu.timer_mode()).filter(|mode| *mode != TimerMode::Off),
             first_submit: None,
             host_since: Instant::now(),
         }
@@ -145,17 +147,42 @@ impl Frame {
             return;
         }
         self.report.draws.push(draw);
+        self.record_draw(stage, draw, target);
+    }
+
+    /// A device that cannot read the number of commands draws all there is room for: those behind the number get no instance
+    /// first (Kim 2015, IV.3).
+    fn record_draw<S: GraphicsStage>(&mut self, stage: S, mut draw: IndexedIndirect, target: &Target) {
+        if !self.gpu.has(Extra::DrawIndirectCount) {
+            if let Some(count) = draw.count.take() {
+                self.clear_tail(count, &draw);
+            }
+        }
         self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+    }
+
+    fn clear_tail(&mut self, count: BufferRef<u32>, draw: &IndexedIndirect) {
+        let Bound::Buffer { id, raw, offset, size } = draw.commands else { return };
+        // Bound from their beginnings: a range need not begin where a stage may bind one.
+        let commands = BufferRef { id, raw, offset: 0, size: offset + size, element: PhantomData };
+        let stage = engine::ClearTail {
+            count: BufferRef { offset: 0, size: count.offset + count.size, ..count },
+            commands,
+            count_word: (count.offset / 4) as u32,
+            first_word: (offset / 4) as u32,
+            command_count: draw.max_draws,
+        };
+        self.dispatch(stage, draw.max_draws);
     }
 
     /// Draws objects without showing them: their depth ahead of the draws that do. Not among the report's draws.
     pub fn draw_unshown<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
-        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+        self.record_draw(stage, draw, target);
     }
 
     /// Draws what shows no object: boxes that are tested. Not among the report's draws.
     pub fn test_boxes<S: GraphicsStage>(&mut self, stage: S, draw: IndexedIndirect, target: &Target) {
-        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+        self.record_draw(stage, draw, target);
     }
 
     /// Clears the target: colour to black, items to none, depth to far.
@@ -262,11 +289,11 @@ impl Frame {
         self.host_since = Instant::now();
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
-        if self.timer.is_some() {
-            self.report.stages.extend(lower::stage_times(vulkan, queries.timestamps, ops)?);
+        if let (Some(_), Some(pool)) = (self.timer, queries.timestamps) {
+            self.report.stages.extend(timers::stage_times(vulkan, pool, ops)?);
         }
         if let Some(pool) = how.statistics {
-            let counted = lower::statistics(vulkan, pool)?;
+            let counted = timers::statistics(vulkan, pool)?;
             let sum = self.report.statistics.get_or_insert_default();
             sum.primitives += counted.primitives;
             sum.fragments += counted.fragments;

@@ -2,7 +2,9 @@
 
 use crate::adapter::{self, AdapterInfo};
 use crate::depth::DepthFormat;
+use crate::descriptors::Descriptors;
 use crate::error::Named;
+use crate::features::{Extra, Extras};
 use crate::instance::Instance;
 use crate::memory::{Retired, RetiredList};
 use crate::pipeline::Pipelines;
@@ -33,6 +35,8 @@ pub struct GpuOptions {
     pub depth: DepthFormat,
     /// Ask for what a [`crate::Window`] needs. A device without it is refused.
     pub windows: bool,
+    /// Features to do without, by name, as if the device lacked them: so that each way around one is tested on any device.
+    pub without: Vec<String>,
 }
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
@@ -51,7 +55,7 @@ pub(crate) struct Inner {
 
 pub(crate) struct Vulkan {
     pub(crate) device: ash::Device,
-    pub(crate) push: ash::khr::push_descriptor::Device,
+    pub(crate) descriptors: Descriptors,
     pub(crate) labels: Option<ash::ext::debug_utils::Device>,
     pub(crate) queue: Mutex<vk::Queue>,
     pub(crate) pool: Mutex<vk::CommandPool>,
@@ -63,7 +67,6 @@ pub(crate) struct Vulkan {
     pub(crate) retired: RetiredList,
     pub(crate) queries: QueryStore,
     pub(crate) frames_alive: AtomicUsize,
-    pub(crate) statistics: bool,
     pub(crate) physical: vk::PhysicalDevice,
     pub(crate) family: u32,
     pub(crate) windows: bool,
@@ -80,18 +83,17 @@ impl Gpu {
     /// Opens a device.
     pub fn open(options: &GpuOptions) -> Result<Self> {
         let instance = Instance::new(options)?;
-        let (physical, info) = adapter::choose(&instance, options.device.as_deref())?;
+        let (physical, info) = adapter::choose(&instance, options.device.as_deref(), &options.without)?;
         adapter::check_depth(&instance, physical, &info, options.depth)?;
         if options.windows {
             adapter::check_windows(&instance, physical, &info)?;
         }
-        let family = graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
+        let (family, _) = adapter::graphics_family(&instance.raw, physical).ok_or_else(|| Error::MissingFeatures {
             device: info.name.clone(),
             missing: "a queue for graphics and compute".to_owned(),
         })?;
-        let statistics = info.optional.iter().any(|(name, present, _)| *name == "pipelineStatisticsQuery" && *present);
-        let device = create_device(&instance.raw, physical, family, statistics, options.windows)?;
-        let vulkan = Vulkan::new(instance, physical, device, family, info, statistics, options)?;
+        let device = create_device(&instance.raw, physical, family, info.extras, options.windows)?;
+        let vulkan = Vulkan::new(instance, physical, device, family, info, options)?;
         let gpu = Gpu(Arc::new(Inner {
             vulkan: Some(vulkan),
             next_id: AtomicU32::new(0),
@@ -99,6 +101,7 @@ impl Gpu {
             barrier_every_stage: options.barrier_every_stage,
         }));
         let mode = match options.timer {
+            _ if !gpu.has(Extra::Timestamps) => TimerMode::Off,
             Some(mode) => mode,
             None => timers::self_check(&gpu)?,
         };
@@ -126,6 +129,11 @@ impl Gpu {
     /// How stages are timed on this device.
     pub fn timer_mode(&self) -> TimerMode {
         self.0.vulkan.as_ref().and_then(|vulkan| vulkan.timer.get().copied()).unwrap_or(TimerMode::Split)
+    }
+
+    /// Whether the device has something that can be done without; an engine without a device records as if it had all.
+    pub fn has(&self, extra: Extra) -> bool {
+        self.info().map_or(Extras::all(), |info| info.extras).has(extra)
     }
 
     /// How depth is kept.
@@ -183,39 +191,33 @@ impl Gpu {
     }
 }
 
-fn graphics_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
-    // SAFETY: the handle comes from this instance.
-    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
-    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
-    families.iter().position(|family| family.queue_flags.contains(wanted)).map(|index| index as u32)
-}
-
 fn create_device(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
     family: u32,
-    statistics: bool,
+    extras: Extras,
     windows: bool,
 ) -> Result<ash::Device> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
     let core = vk::PhysicalDeviceFeatures::default()
-        .multi_draw_indirect(true)
+        .multi_draw_indirect(extras.has(Extra::MultiDrawIndirect))
         .draw_indirect_first_instance(true)
         .fragment_stores_and_atomics(true)
-        .pipeline_statistics_query(statistics);
+        .pipeline_statistics_query(extras.has(Extra::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
-        .draw_indirect_count(true)
+        .draw_indirect_count(extras.has(Extra::DrawIndirectCount))
         .scalar_block_layout(true)
-        .host_query_reset(true);
+        .host_query_reset(extras.has(Extra::HostQueryReset));
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
         .synchronization2(true)
         .maintenance4(true)
-        .subgroup_size_control(true)
-        .compute_full_subgroups(true);
+        .subgroup_size_control(extras.has(Extra::SubgroupSizeControl))
+        .compute_full_subgroups(extras.has(Extra::SubgroupSizeControl));
     let swapchain = windows.then_some(ash::khr::swapchain::NAME.as_ptr());
-    let extensions: Vec<_> = [ash::khr::push_descriptor::NAME.as_ptr()].into_iter().chain(swapchain).collect();
+    let push = ash::khr::push_descriptor::NAME.as_ptr();
+    let extensions: Vec<_> = extras.has(Extra::PushDescriptor).then_some(push).into_iter().chain(swapchain).collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
@@ -233,14 +235,14 @@ impl Vulkan {
         device: ash::Device,
         family: u32,
         info: AdapterInfo,
-        statistics: bool,
         options: &GpuOptions,
     ) -> Result<Self> {
-        let push = ash::khr::push_descriptor::Device::new(&instance.raw, &device);
+        let descriptors = Descriptors::new(&instance.raw, &device, info.extras);
         // SAFETY: the extension is loaded when its function answers; without it labels are left out.
         let has_labels =
             unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }
                 .is_some();
+        let has_labels = has_labels && info.extras.has(Extra::DebugUtils);
         let labels = has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device));
         // SAFETY: the family was asked for when the device was made.
         let queue = unsafe { device.get_device_queue(family, 0) };
@@ -260,7 +262,7 @@ impl Vulkan {
         .map_err(|source| Error::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, source })?;
         let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref())?;
         Ok(Vulkan {
-            push,
+            descriptors,
             labels,
             queue: Mutex::new(queue),
             pool: Mutex::new(pool),
@@ -272,7 +274,6 @@ impl Vulkan {
             retired: RetiredList::default(),
             queries: QueryStore::default(),
             frames_alive: AtomicUsize::new(0),
-            statistics,
             physical,
             family,
             windows: options.windows,
@@ -280,6 +281,10 @@ impl Vulkan {
             instance,
             device,
         })
+    }
+
+    pub(crate) fn has(&self, extra: Extra) -> bool {
+        self.info.extras.has(extra)
     }
 
     /// Frees what was dropped, if no recorded frame can still name it.
@@ -313,6 +318,7 @@ impl Drop for Vulkan {
         pipeline_cache::save(&self.device, &self.pipelines);
         self.pipelines.destroy(&self.device);
         self.queries.destroy(&self.device);
+        self.descriptors.destroy(&self.device);
         // SAFETY: dropped once, here; no allocation outlives it because buffers and images hold the `Gpu`.
         unsafe { ManuallyDrop::drop(&mut self.allocator) };
         // SAFETY: as above.

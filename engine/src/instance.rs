@@ -112,7 +112,7 @@ fn create_messenger(
 /// Every Vulkan device of this machine, best first, without opening any.
 pub fn adapters() -> Result<Vec<AdapterInfo>> {
     let instance = Instance::new(&GpuOptions::default())?;
-    Ok(adapter::list(&instance)?.into_iter().map(|(_, info)| info).collect())
+    Ok(adapter::list(&instance, &[])?.into_iter().map(|(_, info)| info).collect())
 }
 
 /// One line a device: index, name, kind, what it lacks.

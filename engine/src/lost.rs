@@ -6,7 +6,12 @@ use crate::Error;
 use ash::vk;
 
 /// Turns a failed submission into an error; a lost device names the last stage that started.
-pub(crate) fn submit_error(vulkan: &Vulkan, result: vk::Result, pool: vk::QueryPool, ops: &[Recorded]) -> Error {
+pub(crate) fn submit_error(
+    vulkan: &Vulkan,
+    result: vk::Result,
+    pool: Option<vk::QueryPool>,
+    ops: &[Recorded],
+) -> Error {
     match result {
         vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { stage: last_started(&written(vulkan, pool, ops), ops) },
         result => Error::Vulkan { call: "vkQueueSubmit2", result },
@@ -14,7 +19,8 @@ pub(crate) fn submit_error(vulkan: &Vulkan, result: vk::Result, pool: vk::QueryP
 }
 
 /// Which of the submission's timestamps were written. Some drivers still say after the device is lost; none is an answer too.
-fn written(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Vec<bool> {
+fn written(vulkan: &Vulkan, pool: Option<vk::QueryPool>, ops: &[Recorded]) -> Vec<bool> {
+    let Some(pool) = pool else { return Vec::new() };
     let mut ticks = vec![[0u64; 2]; ops.len() + 1];
     let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
     // SAFETY: the pool has this many timestamps. On a lost device the call may fail, but not misbehave; what it leaves

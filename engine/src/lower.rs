@@ -1,11 +1,10 @@
 //! From recorded steps to a Vulkan command buffer.
 
 use crate::barriers::{Barrier, Point};
-use crate::error::Named;
-use crate::frame::{StageTime, Statistics};
+use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::image::Target;
-use crate::pipeline::{descriptor_type, DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
+use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
 use crate::recorder::{IndexedIndirect, Op, Recorded};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
@@ -19,7 +18,8 @@ pub(crate) struct How {
     /// None: stages are not timed.
     pub(crate) timer: Option<TimerMode>,
     pub(crate) statistics: Option<vk::QueryPool>,
-    pub(crate) timestamps: vk::QueryPool,
+    /// None: the device has none.
+    pub(crate) timestamps: Option<vk::QueryPool>,
     pub(crate) barrier_every_stage: bool,
 }
 
@@ -45,17 +45,24 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
         });
     }
     assert_counts_do_not_lapse(ops);
+    vulkan.descriptors.begin(&vulkan.device, ops)?;
     let commands = vulkan.begin_commands()?;
     let recording = Recording { vulkan, commands };
     let device = &vulkan.device;
-    // SAFETY: pools are this frame's own and idle; the command buffer is recording.
-    unsafe {
-        device.reset_query_pool(how.timestamps, 0, stamps);
-        full_barrier(device, commands);
-        if let Some(pool) = how.statistics {
-            device.reset_query_pool(pool, 0, 1);
-            device.cmd_begin_query(commands, pool, 0, vk::QueryControlFlags::empty());
+    let pools = [(how.timestamps, stamps), (how.statistics, 1)];
+    for (pool, count) in pools.into_iter().filter_map(|(pool, count)| Some((pool?, count))) {
+        // SAFETY: pools are this frame's own and idle; the command buffer is recording.
+        unsafe {
+            match vulkan.has(Extra::HostQueryReset) {
+                true => device.reset_query_pool(pool, 0, count),
+                false => device.cmd_reset_query_pool(commands, pool, 0, count),
+            }
         }
+    }
+    full_barrier(device, commands);
+    if let Some(pool) = how.statistics {
+        // SAFETY: the query was reset above.
+        unsafe { device.cmd_begin_query(commands, pool, 0, vk::QueryControlFlags::empty()) };
     }
     recording.stamp(how, 0);
     for (index, recorded) in ops.iter().enumerate() {
@@ -94,12 +101,10 @@ fn assert_counts_do_not_lapse(ops: &[Recorded]) {
 
 impl Recording<'_> {
     fn stamp(&self, how: &How, index: u32) {
-        let Some(timer) = how.timer else { return };
+        let (Some(timer), Some(pool)) = (how.timer, how.timestamps) else { return };
         let device = &self.vulkan.device;
         // SAFETY: `index` is within the pool: `lower` checked it.
-        unsafe {
-            device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, how.timestamps, index)
-        };
+        unsafe { device.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, pool, index) };
         if timer == TimerMode::Split {
             full_barrier(device, self.commands);
         }
@@ -216,7 +221,10 @@ impl Recording<'_> {
                         stride,
                     ),
                     None => {
-                        device.cmd_draw_indexed_indirect(self.commands, commands, commands_at, draw.max_draws, stride)
+                        for (first, count) in pieces(draw.max_draws, self.vulkan.info.most_draws) {
+                            let at = commands_at + u64::from(first) * u64::from(stride);
+                            device.cmd_draw_indexed_indirect(self.commands, commands, at, count, stride);
+                        }
                     }
                 }
             }
@@ -280,53 +288,13 @@ impl Recording<'_> {
         let pipeline: Pipeline = self.vulkan.pipelines.get(device, stage, draw)?;
         // SAFETY: the pipeline is alive as long as the device.
         unsafe { device.cmd_bind_pipeline(self.commands, point, pipeline.raw) };
-        self.push_descriptors(stage, pipeline.layout, point);
+        self.vulkan.descriptors.bind(device, self.commands, stage, &pipeline, point)?;
         if stage.info.push_size > 0 {
             let bytes = &stage.push[..stage.info.push_size as usize];
             // SAFETY: the layout's range is `push_size` bytes for these stages.
             unsafe { device.cmd_push_constants(self.commands, pipeline.layout, pipeline.push_stages, 0, bytes) };
         }
         Ok(())
-    }
-
-    fn push_descriptors(&self, stage: &BoundStage, layout: vk::PipelineLayout, point: vk::PipelineBindPoint) {
-        if stage.resources.is_empty() {
-            return;
-        }
-        let (mut buffers, mut images) = (Vec::new(), Vec::new());
-        for bound in &stage.resources {
-            let (buffer, image) = match bound {
-                Bound::Buffer { raw, offset, size, .. } => (
-                    vk::DescriptorBufferInfo { buffer: vk::Buffer::from_raw(*raw), offset: *offset, range: *size },
-                    vk::DescriptorImageInfo::default(),
-                ),
-                Bound::Image(image) => (
-                    vk::DescriptorBufferInfo::default(),
-                    vk::DescriptorImageInfo::default()
-                        .image_view(vk::ImageView::from_raw(image.view))
-                        .image_layout(vk::ImageLayout::GENERAL),
-                ),
-            };
-            buffers.push([buffer]);
-            images.push([image]);
-        }
-        let writes: Vec<_> = stage
-            .info
-            .bindings
-            .iter()
-            .enumerate()
-            .map(|(index, binding)| {
-                let write = vk::WriteDescriptorSet::default()
-                    .dst_binding(binding.binding)
-                    .descriptor_type(descriptor_type(binding.kind));
-                match stage.resources[index] {
-                    Bound::Buffer { .. } => write.buffer_info(&buffers[index]),
-                    Bound::Image(_) => write.image_info(&images[index]),
-                }
-            })
-            .collect();
-        // SAFETY: the writes fit the layout, as both come from one reflection, and live through the call.
-        unsafe { self.vulkan.push.cmd_push_descriptor_set(self.commands, point, layout, 0, &writes) };
     }
 }
 
@@ -335,6 +303,11 @@ fn range(bound: &Bound) -> (vk::Buffer, u64, u64) {
         Bound::Buffer { raw, offset, size, .. } => (vk::Buffer::from_raw(*raw), *offset, *size),
         Bound::Image(_) => (vk::Buffer::null(), 0, 0),
     }
+}
+
+/// A list in pieces that the device draws at once: where each begins, and how long it is.
+fn pieces(draws: u32, most: u32) -> impl Iterator<Item = (u32, u32)> {
+    (0..draws).step_by(most.max(1) as usize).map(move |first| (first, most.min(draws - first)))
 }
 
 /// Groups that every device can run in one dimension of a grid.
@@ -362,32 +335,19 @@ fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
     }
 }
 
-/// Reads the timestamps of a finished submission.
-pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
-    let mut ticks = vec![0u64; ops.len() + 1];
-    // SAFETY: the submission is done, and wrote this many timestamps.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
-        .named("vkGetQueryPoolResults")?;
-    let ms = f64::from(vulkan.info.timestamp_ns) * 1e-6;
-    let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
-        label: recorded.label.clone(),
-        ms: pair[1].saturating_sub(pair[0]) as f64 * ms,
-    };
-    Ok(ops.iter().zip(ticks.windows(2)).map(time).collect())
-}
-
-/// Reads the pipeline statistics of a finished submission.
-pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statistics> {
-    let mut counted = [[0u64; 2]];
-    // SAFETY: the submission is done and the query was begun and ended in it.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }
-        .named("vkGetQueryPoolResults")?;
-    Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_list_in_pieces_is_drawn_once_and_in_order() {
+        let of = |draws, most| pieces(draws, most).collect::<Vec<_>>();
+        assert_eq!(of(0, 4), []);
+        assert_eq!(of(4, 4), [(0, 4)]);
+        assert_eq!(of(9, 4), [(0, 4), (4, 4), (8, 1)]);
+        assert_eq!(of(3, 1), [(0, 1), (1, 1), (2, 1)]);
+        assert_eq!(of(94_000, u32::MAX), [(0, 94_000)]);
+    }
 
     #[test]
     fn folded_grids_cover_every_group_within_the_limit() {

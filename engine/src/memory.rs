@@ -1,6 +1,7 @@
 //! Buffers. New memory is always zero: drivers do not promise it, and lavapipe does not do it.
 
 use crate::error::Named;
+use crate::features::Extra;
 use crate::gpu::{lock, Gpu, Vulkan};
 use crate::{Error, Result};
 use ash::vk;
@@ -34,6 +35,7 @@ pub struct Buffer<T> {
     bytes: u64,
     len: usize,
     allocation: Option<Allocation>,
+    placement: Placement,
     element: PhantomData<fn() -> T>,
 }
 
@@ -55,6 +57,7 @@ impl<T: Pod> Buffer<T> {
             bytes,
             len,
             allocation: None,
+            placement,
             element: PhantomData,
         };
         if let Some(vulkan) = &gpu.0.vulkan {
@@ -94,7 +97,7 @@ impl<T: Pod> Buffer<T> {
         if bytes.is_empty() || self.gpu.0.vulkan.is_none() {
             return Ok(());
         }
-        if let Some(mapped) = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut) {
+        if let Some(mapped) = self.mapped() {
             mapped[..bytes.len()].copy_from_slice(bytes);
             return Ok(());
         }
@@ -103,7 +106,7 @@ impl<T: Pod> Buffer<T> {
 
     /// Reads the whole buffer, now; the device must be idle (between frames).
     pub fn read(&self) -> Result<Vec<T>> {
-        if let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_slice) {
+        if let Some(mapped) = self.readable() {
             let bytes = &mapped[..self.len * size_of::<T>()];
             return Ok(bytemuck::pod_collect_to_vec(bytes));
         }
@@ -111,8 +114,30 @@ impl<T: Pod> Buffer<T> {
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
+    /// Mapped memory that the host can write as it is. Memory that must be flushed is written through staging: the allocator asks
+    /// for coherent memory only where the host is the one to use it.
+    fn mapped(&mut self) -> Option<&mut [u8]> {
+        self.is_mapped(vk::MemoryPropertyFlags::HOST_COHERENT)
+            .then(|| self.allocation.as_mut().and_then(Allocation::mapped_slice_mut))
+            .flatten()
+    }
+
+    /// Mapped memory that the host can read as it is. What it does not keep in its caches is read word by word over the bus, so that
+    /// a copy is faster.
+    fn readable(&self) -> Option<&[u8]> {
+        self.is_mapped(vk::MemoryPropertyFlags::HOST_COHERENT | vk::MemoryPropertyFlags::HOST_CACHED)
+            .then(|| self.allocation.as_ref().and_then(Allocation::mapped_slice))
+            .flatten()
+    }
+
+    fn is_mapped(&self, wanted: vk::MemoryPropertyFlags) -> bool {
+        let on_device = matches!(self.placement, Placement::Storage | Placement::Geometry);
+        let properties = self.allocation.as_ref().map(Allocation::memory_properties).unwrap_or_default();
+        properties.contains(wanted) && (!on_device || self.gpu.has(Extra::MappedMemory))
+    }
+
     fn clear(&mut self, vulkan: &Vulkan) -> Result<()> {
-        if let Some(mapped) = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut) {
+        if let Some(mapped) = self.mapped() {
             mapped.fill(0);
             return Ok(());
         }
@@ -125,13 +150,17 @@ impl<T: Pod> Buffer<T> {
 }
 
 fn check_range(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Result<()> {
-    if placement == Placement::Geometry || bytes <= vulkan.info.max_storage_bytes {
+    let (most, of) = match placement {
+        Placement::Geometry => (vulkan.info.max_buffer_bytes, "in one buffer"),
+        _ => (vulkan.info.max_storage_bytes.min(vulkan.info.max_buffer_bytes), "in one storage buffer"),
+    };
+    if bytes <= most {
         return Ok(());
     }
     Err(Error::TooLarge {
         what: format!("buffer '{name}'"),
         wanted: format!("{bytes} bytes"),
-        limit: format!("{} bytes in one storage buffer", vulkan.info.max_storage_bytes),
+        limit: format!("{most} bytes {of}"),
         device: vulkan.info.name.clone(),
         remedy: "use a smaller --scale".to_owned(),
     })

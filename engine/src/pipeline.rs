@@ -1,7 +1,9 @@
 //! Pipelines, made on first use from what the shader generator wrote down.
 
 use crate::depth::DepthFormat;
+use crate::descriptors::Descriptors;
 use crate::error::Named;
+use crate::features::Extra;
 use crate::gpu::lock;
 use crate::image::Format;
 use crate::recorder::Primitives;
@@ -20,6 +22,7 @@ const ENTRY: &CStr = c"main";
 pub(crate) struct Pipeline {
     pub(crate) raw: vk::Pipeline,
     pub(crate) layout: vk::PipelineLayout,
+    pub(crate) set: vk::DescriptorSetLayout,
     pub(crate) push_stages: vk::ShaderStageFlags,
 }
 
@@ -43,7 +46,7 @@ pub(crate) struct Pipelines {
     pub(crate) made_any: Mutex<bool>,
     pub(crate) cache: vk::PipelineCache,
     pub(crate) cache_file: Option<PathBuf>,
-    subgroup_size: u32,
+    info: AdapterInfo,
 }
 
 impl Pipelines {
@@ -56,7 +59,7 @@ impl Pipelines {
             made_any: Mutex::new(false),
             cache,
             cache_file,
-            subgroup_size: info.subgroup_size,
+            info: info.clone(),
         })
     }
 
@@ -66,22 +69,27 @@ impl Pipelines {
         if let Some(pipeline) = lock(&self.made).get(&key) {
             return Ok(*pipeline);
         }
-        let layout = self.layout(device, stage.info)?;
+        let (set, layout) = self.layout(device, stage.info)?;
         let raw = match &key.2 {
             None => self.compute(device, stage, layout)?,
             Some(state) => self.graphics(device, stage, layout, state)?,
         };
-        let pipeline = Pipeline { raw, layout, push_stages: stage_flags(stage.info) };
+        let pipeline = Pipeline { raw, layout, set, push_stages: stage_flags(stage.info) };
         *lock(&self.made_any) = true;
         lock(&self.made).insert(key, pipeline);
         Ok(pipeline)
     }
 
-    fn layout(&self, device: &ash::Device, info: &'static StageInfo) -> Result<vk::PipelineLayout> {
+    fn layout(
+        &self,
+        device: &ash::Device,
+        info: &'static StageInfo,
+    ) -> Result<(vk::DescriptorSetLayout, vk::PipelineLayout)> {
         let mut layouts = lock(&self.layouts);
-        if let Some((_, layout)) = layouts.get(info.name) {
-            return Ok(*layout);
+        if let Some(made) = layouts.get(info.name) {
+            return Ok(*made);
         }
+        check_bindings(&self.info, info)?;
         let flags = stage_flags(info);
         let bindings: Vec<_> = info
             .bindings
@@ -96,7 +104,7 @@ impl Pipelines {
             .collect();
         let set_info = vk::DescriptorSetLayoutCreateInfo::default()
             .bindings(&bindings)
-            .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR);
+            .flags(Descriptors::layout_flags(self.info.extras));
         // SAFETY: the device is alive; the arrays live through the calls.
         let set =
             unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
@@ -107,22 +115,24 @@ impl Pipelines {
         // SAFETY: as above.
         let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.named("vkCreatePipelineLayout")?;
         layouts.insert(info.name, (set, layout));
-        Ok(layout)
+        Ok((set, layout))
     }
 
     fn compute(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
         let constants = Constants::new(stage);
         let specialization = constants.info();
         let module = shader(device, &stage.info.modules[0])?;
-        // A stage that counts on its subgroup says so by a constant of this name; the size is then required, not hoped for.
-        let mut required =
-            vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default().required_subgroup_size(self.subgroup_size);
+        // A stage whose work group should be one subgroup says so by a constant of this name; the size is then required. It must
+        // be right, if slower, whatever subgroups there are: not every device takes a size.
+        let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
+            .required_subgroup_size(self.info.subgroup_size);
+        let has_size = self.info.extras.has(Extra::SubgroupSizeControl);
         let mut shader_stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module)
             .name(ENTRY)
             .specialization_info(&specialization);
-        if stage.info.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
+        if has_size && stage.info.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
             shader_stage =
                 shader_stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut required);
         }
@@ -178,6 +188,21 @@ impl Pipelines {
             device.destroy_pipeline_cache(self.cache, None);
         }
     }
+}
+
+/// An error if a stage binds more buffers than the device lets it: Vulkan promises 4, devices give 30 or more.
+fn check_bindings(adapter: &AdapterInfo, info: &StageInfo) -> Result<()> {
+    let buffers = info.bindings.iter().filter(|binding| binding.kind == BindingKind::StorageBuffer).count();
+    if buffers <= adapter.most_buffers as usize {
+        return Ok(());
+    }
+    Err(Error::TooLarge {
+        what: format!("stage '{}'", info.name),
+        wanted: format!("{buffers} storage buffers"),
+        limit: format!("{} a stage", adapter.most_buffers),
+        device: adapter.name.clone(),
+        remedy: "choose another method or device".to_owned(),
+    })
 }
 
 fn draw_pipeline(

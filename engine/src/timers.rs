@@ -3,7 +3,10 @@
 //! A timestamp says when the device got that far. A driver that batches work (lavapipe) gets that far before the work is
 //! done, and charges it to whoever flushes it; there a full barrier after each timestamp splits the stages properly.
 
+use crate::features::Extra;
+use crate::frame::{StageTime, Statistics};
 use crate::gpu::{lock, Gpu, Vulkan};
+use crate::recorder::Recorded;
 use crate::{error::Named, Buffer, Format, Image, IndexedIndirect, Placement, Primitives, Result, Target};
 use ash::vk;
 use std::fmt;
@@ -16,6 +19,8 @@ pub enum TimerMode {
     Plain,
     /// A timestamp and then a full barrier after each stage.
     Split,
+    /// The device has no timestamps: frames are timed, stages are not.
+    Off,
 }
 
 impl fmt::Display for TimerMode {
@@ -23,6 +28,7 @@ impl fmt::Display for TimerMode {
         out.write_str(match self {
             TimerMode::Plain => "timestamps",
             TimerMode::Split => "timestamps with a full barrier after each",
+            TimerMode::Off => "nothing: the device has no timestamps",
         })
     }
 }
@@ -32,7 +38,7 @@ pub(crate) const MAX_TIMESTAMPS: u32 = 4096;
 
 /// Query pools of one frame.
 pub(crate) struct Queries {
-    pub(crate) timestamps: vk::QueryPool,
+    pub(crate) timestamps: Option<vk::QueryPool>,
     pub(crate) statistics: Option<vk::QueryPool>,
 }
 
@@ -54,17 +60,15 @@ impl QueryStore {
                 vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES
                     | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
             );
-        // SAFETY: the device is alive; statistics are asked for only where the feature is on.
-        unsafe {
-            Ok(Queries {
-                timestamps: vulkan.device.create_query_pool(&timestamps, None).named("vkCreateQueryPool")?,
-                statistics: if vulkan.statistics {
-                    Some(vulkan.device.create_query_pool(&statistics, None).named("vkCreateQueryPool")?)
-                } else {
-                    None
-                },
-            })
-        }
+        let made = |info: &vk::QueryPoolCreateInfo<'_>, extra| {
+            // SAFETY: the device is alive, and has what the pool is for.
+            let make = || unsafe { vulkan.device.create_query_pool(info, None) }.named("vkCreateQueryPool");
+            vulkan.has(extra).then(make).transpose()
+        };
+        Ok(Queries {
+            timestamps: made(&timestamps, Extra::Timestamps)?,
+            statistics: made(&statistics, Extra::PipelineStatistics)?,
+        })
     }
 
     pub(crate) fn give_back(&self, queries: Queries) {
@@ -73,15 +77,47 @@ impl QueryStore {
 
     pub(crate) fn destroy(&self, device: &ash::Device) {
         for queries in lock(&self.0).drain(..) {
-            // SAFETY: the device is idle and about to go.
-            unsafe {
-                device.destroy_query_pool(queries.timestamps, None);
-                if let Some(statistics) = queries.statistics {
-                    device.destroy_query_pool(statistics, None);
-                }
+            for pool in [queries.timestamps, queries.statistics].into_iter().flatten() {
+                // SAFETY: the device is idle and about to go.
+                unsafe { device.destroy_query_pool(pool, None) };
             }
         }
     }
+}
+
+/// Reads the timestamps of a finished submission.
+pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
+    let mut ticks = vec![0u64; ops.len() + 1];
+    // SAFETY: the submission is done, and wrote this many timestamps.
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
+        .named("vkGetQueryPoolResults")?;
+    let ms = f64::from(vulkan.info.timestamp_ns) * 1e-6;
+    let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
+        label: recorded.label.clone(),
+        ms: ticks_between(pair[0], pair[1], vulkan.info.timestamp_bits) as f64 * ms,
+    };
+    Ok(ops.iter().zip(ticks.windows(2)).map(time).collect())
+}
+
+/// Ticks from one timestamp to a later one. Those of fewer than 64 bits start again at 0: 36 bits of 83 ns after 95 minutes.
+/// A device that steps back a little (clocks of several cores) took no time.
+fn ticks_between(from: u64, to: u64, bits: u32) -> u64 {
+    let shift = 64 - bits.clamp(1, 64);
+    let ticks = (to << shift).wrapping_sub(from << shift);
+    if ticks > u64::MAX / 2 {
+        0
+    } else {
+        ticks >> shift
+    }
+}
+
+/// Reads the pipeline statistics of a finished submission.
+pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statistics> {
+    let mut counted = [[0u64; 2]];
+    // SAFETY: the submission is done and the query was begun and ended in it.
+    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }
+        .named("vkGetQueryPoolResults")?;
+    Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
 }
 
 /// Side of the picture that the self-check's heavy half fills, in pixels.
@@ -95,9 +131,6 @@ const CHECK_WORDS: u32 = 1 << 20;
 /// times as long and a fifth of the whole, stages are not kept apart. (lavapipe puts drawings off and runs dispatches at once,
 /// so that a clear is charged with the dispatch behind it.)
 pub(crate) fn self_check(gpu: &Gpu) -> Result<TimerMode> {
-    if gpu.info().is_some_and(|info| info.timestamp_ns == 0.0) {
-        return Ok(TimerMode::Split);
-    }
     let check = Check::new(gpu)?;
     let (mut drawn_on, mut dispatched_on) = (Vec::new(), Vec::new());
     for _ in 0..3 {
@@ -173,7 +206,18 @@ impl Check {
 
 #[cfg(test)]
 mod tests {
-    use super::overcharge;
+    use super::{overcharge, ticks_between};
+
+    #[test]
+    fn timestamps_that_start_again_at_zero_still_tell_the_time() {
+        assert_eq!(ticks_between(5, 12, 64), 7);
+        assert_eq!(ticks_between((1 << 36) - 3, 4, 36), 7);
+        assert_eq!(ticks_between(u64::MAX - 2, 4, 64), 7);
+        assert_eq!(ticks_between(12, 5, 64), 0, "a step back");
+        assert_eq!(ticks_between(12, 5, 36), 0, "a step back");
+        // Bits beyond the valid ones mean nothing.
+        assert_eq!(ticks_between(0xff << 36 | 5, 12, 36), 7);
+    }
 
     #[test]
     fn a_light_stage_that_pays_for_its_neighbour_is_noticed() {

@@ -4,6 +4,71 @@
 
 use crate::contract::*;
 
+/// Commands behind a list's end get no instance, so that they draw nothing: for devices that cannot read the number
+/// of commands on the GPU, and draw all that there is room for (Kim 2015, IV.3). What is before the end is not touched.
+/// Twin: tests/tests/without.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct ClearTail {
+    /// `count` in GLSL.
+    pub count: BufferRef<u32>,
+    /// `commands` in GLSL.
+    pub commands: BufferRef<u32>,
+    /// `count_word` in GLSL.
+    pub count_word: u32,
+    /// `first_word` in GLSL.
+    pub first_word: u32,
+    /// `command_count` in GLSL.
+    pub command_count: u32,
+}
+
+impl Stage for ClearTail {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "engine/clear_tail",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/engine/clear_tail.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "count", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "commands", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 12,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ClearTailPush {
+            count_word: self.count_word,
+            first_word: self.first_word,
+            command_count: self.command_count,
+        };
+        BoundStage::new(Self::INFO, vec![self.count.into(), self.commands.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for ClearTail {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ClearTailPush {
+    count_word: u32,
+    first_word: u32,
+    command_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ClearTailPush, count_word) == 0);
+    assert!(std::mem::offset_of!(ClearTailPush, first_word) == 4);
+    assert!(std::mem::offset_of!(ClearTailPush, command_count) == 8);
+    assert!(size_of::<ClearTailPush>() == 12);
+};
+
 /// A depth buffer as reversed floats, where its format is another and copying would give other bits.
 /// No twin: a texel is a word; tests/tests/precision.rs holds it to what the host reads.
 #[derive(Clone, Copy, Debug)]

@@ -25,6 +25,7 @@ pub const STAGES: &[&StageInfo] = &[
     <draw::ObjectsAndItems as Stage>::INFO,
     <draw::ObjectsItemsAndFlags as Stage>::INFO,
     <draw::Overdraw as Stage>::INFO,
+    <engine::ClearTail as Stage>::INFO,
     <engine::CopyDepth as Stage>::INFO,
     <engine::SpinPixels as Stage>::INFO,
     <engine::SpinWords as Stage>::INFO,

@@ -24,7 +24,7 @@ pub const FARTHEST_STRIP: u32 = 16;
 pub const FARTHEST_LOOKUPS: u32 = 256;
 
 /// `DEPTH_SLACK_PER_PIXEL` in GLSL.
-pub const DEPTH_SLACK_PER_PIXEL: f32 = 8.0;
+pub const DEPTH_SLACK_PER_PIXEL: f32 = 12.0;
 
 /// `ROUNDING` in GLSL.
 pub const ROUNDING: f32 = 2.3841858e-7;

@@ -15,11 +15,13 @@ pub struct Device {
 }
 
 /// How tests open devices: validation on; `SIGHTLINE_TEST_DEVICE` is an index or a part of the name, and "any" leaves the
-/// choice to the engine.
+/// choice to the engine. `SIGHTLINE_TEST_WITHOUT` names features that tests do without.
 pub fn options() -> GpuOptions {
     let wanted = std::env::var("SIGHTLINE_TEST_DEVICE").ok();
     let device = wanted.filter(|name| !name.is_empty() && name != "any");
-    GpuOptions { device, validation: true, ..GpuOptions::default() }
+    let without = std::env::var("SIGHTLINE_TEST_WITHOUT").unwrap_or_default();
+    let without = without.split(',').filter(|name| !name.is_empty()).map(str::to_owned).collect();
+    GpuOptions { device, validation: true, without, ..GpuOptions::default() }
 }
 
 /// The device, when other tests of this process are done with it. Ask once a test: a second call in one test waits forever.

@@ -11,10 +11,9 @@ use crate::stats;
 use crate::truth::RunTruth;
 use anyhow::{Context, Result};
 use culling::{Entry, Options, VisibleSets, Work};
-use engine::{Capture, FrameReport};
+use engine::{Capture, FrameReport, TimerMode};
 use pairs::Pair;
 use stages::{stage_times, stages};
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -296,6 +295,12 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
     }
 }
 
+/// What the device lacks of what is used where present, or does without as `--without` asks: it may cost time.
+fn lacking(info: &engine::AdapterInfo) -> (String, String) {
+    let lacks: Vec<_> = info.optional.iter().filter(|it| !it.present).map(|it| it.name).collect();
+    ("lacks".to_owned(), if lacks.is_empty() { "nothing".to_owned() } else { lacks.join(", ") })
+}
+
 /// Results of a session without methods: what ran, on what.
 pub fn header(session: &Session, command: &str) -> Results {
     let info = session.gpu.info();
@@ -310,9 +315,12 @@ pub fn header(session: &Session, command: &str) -> Results {
             kind: text(|info| format!("{:?}", info.kind).to_lowercase()),
             driver: text(|info| info.driver.clone()),
             api_version: text(|info| info.api.clone()),
-            timer_mode: format!("{}, in frames of their own; frame times are taken without", session.gpu.timer_mode()),
+            timer_mode: match session.gpu.timer_mode() {
+                TimerMode::Off => TimerMode::Off.to_string(),
+                mode => format!("{mode}, in frames of their own; frame times are taken without"),
+            },
             depth_format: session.gpu.depth().to_string(),
-            details: BTreeMap::new(),
+            details: info.map(lacking).into_iter().collect(),
         },
         scene: results::Scene {
             name: session.scene.name.clone(),

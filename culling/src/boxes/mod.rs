@@ -7,7 +7,7 @@ pub mod twin;
 
 use crate::world::{View, World};
 use crate::Result;
-use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives};
+use engine::{Buffer, Extra, Frame, Gpu, IndexedIndirect, Placement, Primitives};
 use glam::{DMat4, DVec3};
 use shaders::types::{BoxView, DrawCommand, PACK_CHUNK};
 use shaders::{pack, BufferRef, Stage};
@@ -19,7 +19,9 @@ const NEAR_FACES: [u32; 18] = [0, 2, 6, 0, 6, 4, 0, 1, 5, 0, 5, 4, 0, 1, 3, 0, 3
 pub struct BoxShape {
     corners: Buffer<u32>,
     view: Buffer<BoxView>,
-    draws: Buffer<u32>,
+    /// A count that never changes, because draws with and without one must not be mixed (see [`IndexedIndirect`]); none where no draw
+    /// has one.
+    draws: Option<Buffer<u32>>,
 }
 
 impl BoxShape {
@@ -28,7 +30,10 @@ impl BoxShape {
         Ok(BoxShape {
             corners: Buffer::with_data(gpu, "boxes.corners", &NEAR_FACES, Placement::Geometry)?,
             view: Buffer::new(gpu, &format!("{name}.view"), 1, Placement::Upload)?,
-            draws: Buffer::with_data(gpu, "boxes.draws", &[draws], Placement::Storage)?,
+            draws: gpu
+                .has(Extra::DrawIndirectCount)
+                .then(|| Buffer::with_data(gpu, "boxes.draws", &[draws], Placement::Storage))
+                .transpose()?,
         })
     }
 
@@ -54,8 +59,7 @@ impl BoxShape {
             instances: self.corners.all().into(),
             indices: self.corners.all().into(),
             commands: commands.into(),
-            // A count that never changes, because draws with and without one must not be mixed (see `IndexedIndirect`).
-            count: Some(self.draws.all()),
+            count: self.draws.as_ref().map(Buffer::all),
             max_draws: draws,
             primitives: Primitives::Triangles,
         }

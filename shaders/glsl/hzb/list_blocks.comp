@@ -10,6 +10,7 @@
 // The engine sets both to the device's subgroup size.
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint SUBGROUP_SIZE = 8u;
+#include "lanes.glsl"
 layout(set = 0, binding = 0, scalar) readonly buffer Due { uint items[]; } due;
 layout(set = 0, binding = 1, scalar) writeonly buffer Blocks { uint words[]; } blocks;
 // By kind of primitive and place in the list: how many objects are drawn. Set to 0 here, counted by the next stage.
@@ -17,9 +18,11 @@ layout(set = 0, binding = 2, scalar) writeonly buffer Counts { uint items[]; } c
 layout(push_constant, scalar) uniform Push { uint block_count; uint kind_count; } push;
 
 void main() {
-    uint lane = gl_SubgroupInvocationID;
+    if (gl_SubgroupID != 0u) return;
+    uint lane = own_lane();
+    uint lanes = all_lanes();
     uint before = 0u;
-    for (uint first = 0u; first < push.block_count; first += SUBGROUP_SIZE) {
+    for (uint first = 0u; first < push.block_count; first += lanes) {
         uint block = first + lane;
         uint listed = block < push.block_count ? due.items[block] : 0u;
         uint place = before + subgroupExclusiveAdd(listed);

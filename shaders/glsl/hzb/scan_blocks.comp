@@ -9,6 +9,7 @@
 // The engine sets both to the device's subgroup size.
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint SUBGROUP_SIZE = 8u;
+#include "lanes.glsl"
 layout(set = 0, binding = 0, scalar) readonly buffer Blocks { uint words[]; } blocks;
 layout(set = 0, binding = 1, scalar) readonly buffer Counts { uint items[]; } counts;
 layout(set = 0, binding = 2, scalar) writeonly buffer Starts { uint items[]; } starts;
@@ -22,12 +23,14 @@ layout(set = 0, binding = 6, scalar) writeonly buffer Grids { uint items[]; } gr
 layout(push_constant, scalar) uniform Push { uint block_count; uint kind_count; uint reductions; } push;
 
 void main() {
-    uint lane = gl_SubgroupInvocationID;
+    if (gl_SubgroupID != 0u) return;
+    uint lane = own_lane();
+    uint lanes = all_lanes();
     uint listed = blocks.words[3];
     uint all = 0u;
     for (uint kind = 0u; kind < push.kind_count; kind++) {
         uint before = 0u;
-        for (uint first = 0u; first < listed; first += SUBGROUP_SIZE) {
+        for (uint first = 0u; first < listed; first += lanes) {
             uint place = kind * push.block_count + first + lane;
             uint count = first + lane < listed ? counts.items[place] : 0u;
             uint start = before + subgroupExclusiveAdd(count);

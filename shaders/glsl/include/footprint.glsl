@@ -5,19 +5,21 @@
 // transform. The device then snaps vertices to a grid of snap_px. A pixel is drawn only if its centre lies in the snapped
 // triangle, so only pixels whose centre lies in the box's rectangle grown by that much can be touched: a box that contains
 // no pixel centre draws nothing. Depth: z/w of anything in the box is at most the largest over its corners (a ratio of
-// affine functions takes its extremes there), rounded as above. Rasterisers evaluate the depth plane of the unsnapped
-// triangle at the centre, which may lie outside it: snapping moves each vertex by up to snap_px / 2 in x and y, and so an
-// edge by up to 0.71 snap_px. That adds at most 0.71 snap_px / h times the triangle's depth range, for a triangle h pixels
-// high at its lowest (measured on lavapipe over 13,000 adverse triangles: 0.5 snap_px / h). A line's pixels lie up to a
-// pixel past its ends, and its depth goes on with its slope: at most (1 + snap_px) / l for a line l pixels long (measured
-// on lavapipe: 0.5 / l). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8 pixel. Thinner slivers and shorter
-// lines that span most of their box's depth range are outside the documented raster conditions; those of a dense mesh are
-// not, as they span little of it.
+// affine functions takes its extremes there), rounded as above. A pixel's depth is that of the triangle's plane at its centre,
+// which may lie outside the triangle: snapping moves each vertex by up to snap_px / 2 in x and y, and so an edge by up to
+// 0.71 snap_px against the plane of the unsnapped triangle (lavapipe). SwiftShader takes the plane of the snapped one, in
+// which no centre lies outside, but snaps once more where it clips at the picture's border: the plane is off by 0.71 snap_px
+// one way and the edge the other. So 1.42 snap_px / h times the triangle's depth range at most, for a triangle h pixels high
+// at its lowest (measured over 13,000 adverse triangles: 0.49 snap_px / h on lavapipe, 1.00 on SwiftShader, there at the
+// border alone). A line's pixels lie up to a pixel past its ends, and its depth goes on with its slope: at most
+// (1 + 2 snap_px) / l for a line l pixels long (measured on lavapipe: 0.5 / l). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8
+// pixel. Thinner slivers and shorter lines that span most of their box's depth range are outside the documented raster
+// conditions; those of a dense mesh are not, as they span little of it.
 #ifndef FOOTPRINT_GLSL
 #define FOOTPRINT_GLSL
 #include "cull.glsl"
 
-const float DEPTH_SLACK_PER_PIXEL = 8.0;
+const float DEPTH_SLACK_PER_PIXEL = 12.0;
 const float ROUNDING = 4.0 / 16777216.0;
 
 struct Footprint {

@@ -12,6 +12,7 @@
 // The engine sets both to the device's subgroup size.
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint SUBGROUP_SIZE = 8u;
+#include "lanes.glsl"
 
 // By list and chunk; totals by list.
 layout(set = 0, binding = 0, scalar) readonly buffer Counts { uint items[]; } counts;
@@ -20,10 +21,12 @@ layout(set = 0, binding = 2, scalar) writeonly buffer Total { uint items[]; } to
 layout(push_constant, scalar) uniform Push { uint chunk_count; } push;
 
 void main() {
-    uint lane = gl_SubgroupInvocationID;
+    if (gl_SubgroupID != 0u) return;
+    uint lane = own_lane();
+    uint lanes = all_lanes();
     uint list = gl_WorkGroupID.x;
     uint before = 0u;
-    for (uint first = 0u; first < push.chunk_count; first += SUBGROUP_SIZE) {
+    for (uint first = 0u; first < push.chunk_count; first += lanes) {
         uint chunk = first + lane;
         uint place = list * push.chunk_count + chunk;
         uint flagged = chunk < push.chunk_count ? counts.items[place] : 0u;

@@ -14,7 +14,7 @@ const ROUNDS: usize = 6;
 /// Small objects of one to four triangles where the camera sees them: from a hundredth of a pixel to the whole picture,
 /// flat on the view or deep. Every third is a sliver, and every third is an edge that passes a pixel's centre by less than
 /// the vertex grid and drops away behind it: the worst there is for depth.
-fn triangles(random: &mut Random, shot: &Shot, topology: Topology) -> Scene {
+fn triangles(random: &mut Random, shot: &Shot, topology: Topology, snap_px: f64) -> Scene {
     let mut maker = Maker::new("triangles");
     let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
     let relative_from_clip = (shot.projection.clip_from_view(size.x / size.y)
@@ -28,7 +28,7 @@ fn triangles(random: &mut Random, shot: &Shot, topology: Topology) -> Scene {
     for index in 0..TRIANGLES {
         let depth = depth_of(random, shot.projection);
         let corners_px = match (topology, index % 3) {
-            (Topology::Triangles, 0) => falling_edge(random, size),
+            (Topology::Triangles, 0) => falling_edge(random, size, snap_px),
             (Topology::Triangles, kind) => thrown(random, size, kind == 1, [3, 3, 12][index / 3 % 3]),
             (Topology::Lines, 0) => falling_line(random, size),
             (Topology::Lines, kind) => thrown(random, size, kind == 1, [2, 2, 6][index / 3 % 3]),
@@ -63,11 +63,11 @@ fn thrown(random: &mut Random, size: DVec2, sliver: bool, count: usize) -> Vec<C
 }
 
 /// A near edge that passes the centre of a pixel within the vertex grid, and a corner some way behind it.
-fn falling_edge(random: &mut Random, size: DVec2) -> Vec<Corner> {
+fn falling_edge(random: &mut Random, size: DVec2, snap_px: f64) -> Vec<Corner> {
     let centre = (DVec2::new(random.unit(), random.unit()) * size).floor() + 0.5;
     let along = DVec2::from_angle(random.range(0.0, 6.3));
     let (length, height, spread) = (random.decade(0.1, 30.0), random.decade(2e-3, 3.0), random.decade(1e-3, 0.9));
-    let edge = centre + along.perp() * random.range(-1.0, 1.0) / 256.0;
+    let edge = centre + along.perp() * random.range(-1.0, 1.0) * snap_px;
     let part = random.unit();
     let corner = edge + along.perp() * height + along * random.range(-0.5, 0.5) * length;
     vec![(edge - along * part * length, 0.0), (edge + along * (1.0 - part) * length, 0.0), (corner, spread)]
@@ -92,7 +92,7 @@ fn seen(topology: Topology) -> Covered {
             let rotation = if round % 3 == 0 { glam::DQuat::IDENTITY } else { random.turn() };
             let away = if round % 3 == 2 { 1e6 } else { 1.0 };
             let shot = Shot { pose: Pose { position: random.vector() * away, rotation }, projection, seconds: 0.0 };
-            let scene = triangles(&mut random, &shot, topology);
+            let scene = triangles(&mut random, &shot, topology, f64::from(gpu.snap_px()));
             let case = Case::new(name, scene, vec![shot]).sized(SIZE);
             let mut seen = covered(&mut Lab::new(&gpu, &case), &case, |_, _| ());
             seen.outside.iter_mut().for_each(|fault| *fault = format!("{name}, round {round}: {fault}"));
@@ -100,11 +100,12 @@ fn seen(topology: Topology) -> Covered {
         }
     }
     println!(
-        "{topology:?}: {} objects, {} pixels; outside by at most {:.5} px; slack by height {:.2?}; {} pixels too near",
+        "{topology:?}: {} objects, {} pixels; outside by at most {:.5} px; slack by height {:.2?}, by {:.3} grids at most; {} pixels too near",
         all.objects,
         all.pixels,
         all.worst_outside_px,
         all.worst_slack,
+        all.worst_shift,
         all.too_near.len()
     );
     all
@@ -123,9 +124,10 @@ fn footprints_hold_every_pixel_of_triangles() {
     harness::assert_none(&all.outside);
     let high = all.too_near.iter().filter(|near| near.height_px >= 0.125).map(|near| near.text.clone());
     harness::assert_none(&high.collect::<Vec<_>>());
-    // Thinner slivers are outside the raster conditions, but the derivation still bounds them.
+    // Thinner slivers are outside the raster conditions, but the derivation still bounds them: an edge moves by 1.42 vertex grids
+    // against the plane of its depths at most.
     let unexplained =
-        all.too_near.iter().filter(|near| near.slack > 0.75 / near.height_px).map(|near| near.text.clone());
+        all.too_near.iter().filter(|near| near.slack > 1.45 / near.height_px).map(|near| near.text.clone());
     harness::assert_none(&unexplained.collect::<Vec<_>>());
     assert!(
         all.objects > 3000 && all.pixels > 50_000,

@@ -21,6 +21,9 @@ pub struct DeviceArgs {
     /// How depth is kept, to study what formats cost: bounds are derived for reversed D32, and methods are exact with it alone
     #[arg(long, value_name = "FORMAT", default_value = "d32")]
     pub depth_format: DepthChoice,
+    /// Do without these features, as if the device lacked them (`sightline info` lists them): each has a way around it
+    #[arg(long, value_name = "FEATURE,...", value_delimiter = ',')]
+    pub without: Vec<String>,
 }
 
 /// Formats of depth buffers.
@@ -64,6 +67,7 @@ impl DeviceArgs {
                 DepthChoice::D16 => DepthFormat::D16,
             },
             windows: false,
+            without: self.without.clone(),
         }
     }
 }

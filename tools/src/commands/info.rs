@@ -4,7 +4,7 @@ use super::say;
 use crate::cli::DeviceArgs;
 use crate::session::cache_folder;
 use anyhow::Result;
-use engine::{adapters, device_lines, Format, Gpu};
+use engine::{adapters, device_lines, Format, Gpu, TimerMode};
 
 /// Prints what there is.
 pub fn run(arguments: &DeviceArgs) -> Result<()> {
@@ -24,10 +24,14 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
             format!(
                 "{} ({})",
                 gpu.timer_mode(),
-                if arguments.timer.is_some() { "by --timer" } else { "by self-check" }
+                match (gpu.timer_mode(), arguments.timer) {
+                    (TimerMode::Off, _) => "stages are not timed",
+                    (_, Some(_)) => "by --timer",
+                    (_, None) => "by self-check",
+                }
             ),
         ),
-        ("timestamp", format!("{} ns a tick", info.timestamp_ns)),
+        ("timestamp", format!("{} ns a tick, {} bits", info.timestamp_ns, info.timestamp_bits)),
         ("subgroup", format!("{} lanes", info.subgroup_size)),
         ("largest image", format!("{0} x {0} pixels", info.max_image_px)),
         ("largest buffer", format!("{} MiB for a stage", info.max_storage_bytes >> 20)),
@@ -41,8 +45,8 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
     for (name, value) in rows {
         say(&format!("{name:<15} {value}"))?;
     }
-    for (name, present, purpose) in &info.optional {
-        say(&format!("{:<15} {name}: {}", if *present { "has" } else { "lacks" }, purpose))?;
+    for feature in info.needed.iter().chain(&info.optional) {
+        say(&format!("{:<15} {}: {}", if feature.present { "has" } else { "lacks" }, feature.name, feature.why))?;
     }
     say("methods         all methods run on this device")
 }

@@ -34,6 +34,8 @@ pub struct Covered {
     /// Most that a pixel came nearer than its box, in depth ranges of the box times the vertex grid, by height of
     /// the lowest triangle or length of the shortest line: less than 1/8, 1/4, 1/2, 1, 4 pixels, and higher.
     pub worst_slack: [f64; 6],
+    /// Most of these times the height: how far the device has moved a triangle against its depths, in vertex grids.
+    pub worst_shift: f64,
 }
 
 impl Default for Covered {
@@ -47,6 +49,7 @@ impl Default for Covered {
             spare_px: f64::INFINITY,
             spare_depths: None,
             worst_slack: [0.0; 6],
+            worst_shift: 0.0,
         }
     }
 }
@@ -188,6 +191,7 @@ impl Covered {
         let bin = [0.125, 0.25, 0.5, 1.0, 4.0].iter().position(|height| print.height_px < *height).unwrap_or(5);
         if print.range > 1e-5 * print.bare_nearest {
             self.worst_slack[bin] = self.worst_slack[bin].max(slack);
+            self.worst_shift = self.worst_shift.max(slack * print.height_px);
         }
         if depth > promised.nearest {
             let text = format!(
@@ -207,6 +211,7 @@ impl Covered {
         self.worst_outside_px = self.worst_outside_px.max(other.worst_outside_px);
         self.spare_px = self.spare_px.min(other.spare_px);
         self.spare_depths = self.spare_depths.into_iter().chain(other.spare_depths).min();
+        self.worst_shift = self.worst_shift.max(other.worst_shift);
         for (mine, theirs) in self.worst_slack.iter_mut().zip(other.worst_slack) {
             *mine = mine.max(theirs);
         }
