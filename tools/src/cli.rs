@@ -20,7 +20,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use culling::world::DETAIL_OPTION;
 use culling::METHODS;
 use scenes::SceneOptions;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
 /// stage by stage, against the truth.
@@ -62,14 +62,15 @@ pub enum Command {
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
     A table takes its methods and settings from the paper; --set adds what it leaves open (warp.OPTION for a warp on its own).\n\
     The path of eovc-* is spread over --frames: 600 is the thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
-    woc-* and tog-* walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
+    woc-*, tog-* and lean walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
 
 /// Which scene, path and picture size.
 #[derive(Args, Clone, Debug)]
 pub struct SceneChoice {
-    /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out
-    #[arg(long, value_name = "NAME|FILE", value_delimiter = ',')]
+    /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out. A table takes several,
+    /// separated by commas or by giving --scene again; a file whose name holds commas is taken whole if it is there
+    #[arg(long, value_name = "NAME|FILE")]
     pub scene: Vec<String>,
     /// Objects of a procedural scene, as a multiple of its standard number
     #[arg(long, value_name = "F", default_value_t = 0.25)]
@@ -80,7 +81,8 @@ pub struct SceneChoice {
     /// How finely the meshes of the papers' scenes are divided, 0 to 4: each level has about four times the triangles
     #[arg(long, value_name = "N", default_value_t = SceneOptions::default().detail)]
     pub detail_level: u32,
-    /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, or a recorded .json file
+    /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, a recorded .json file, or cuts:
+    /// each frame somewhere else on the scene's way (its camera's or its walk), so that no frame is like the one before
     #[arg(long, value_name = "NAME|FILE")]
     pub path: Option<String>,
     /// How fast the camera goes: at 1, a frame is 1/960 of the path's way (16 s at 60 Hz)
@@ -130,9 +132,9 @@ pub struct BenchArgs {
     /// Methods and options.
     #[command(flatten)]
     pub methods: MethodChoice,
-    /// Runs a published table on the scenes (city-block and rooms, unless --scene names some, separated by commas) and
-    /// prints its figures beside ours. The table chooses methods and settings; the path is its paper's, the whole of
-    /// closing-in (eovc-*) or a walk (woc-*, tog-*), unless --path names another
+    /// Runs a table on its scenes (ours that are built after its paper's, unless --scene names some) and prints its figures
+    /// beside the published ones; of `lean`, which is ours, goals beside them. The table chooses methods and settings; the
+    /// path is its paper's, the whole of closing-in (eovc-*) or a walk (woc-*, tog-*, lean), unless --path names another
     #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["capture", "json"])]
     pub table: Option<String>,
     /// Sweeps of options.
@@ -267,14 +269,27 @@ impl SceneChoice {
     /// # Errors
     /// More than one scene.
     pub fn one_scene(&self) -> Result<&str> {
-        match self.scene.as_slice() {
+        match self.scenes().as_slice() {
             [] => Ok("city-block"),
-            [one] => Ok(one),
+            [one] => Ok(*one),
             all => bail!(
                 "--scene {}: give one scene; only a table of `sightline bench --table` runs several",
                 all.join(",")
             ),
         }
+    }
+
+    /// All that is named: each `--scene` is a file of that name, commas and all, or else a list.
+    pub fn scenes(&self) -> Vec<&str> {
+        let named = |given: &'_ str| Path::new(given).is_file();
+        let mut scenes = Vec::new();
+        for given in &self.scene {
+            match named(given) {
+                true => scenes.push(given.as_str()),
+                false => scenes.extend(given.split(',').map(str::trim).filter(|name| !name.is_empty())),
+            }
+        }
+        scenes
     }
 
     /// As a session of one of the scenes takes it.
@@ -295,7 +310,7 @@ impl SceneChoice {
 
 fn table_names() -> PossibleValuesParser {
     PossibleValuesParser::new(TABLES.iter().map(|table| {
-        PossibleValue::new(table.id).help(format!("{}, table {}: {}", table.paper.name, table.number, table.title))
+        PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))
     }))
 }
 
@@ -326,11 +341,31 @@ mod tests {
         };
         assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), "city-block");
         let two = bench("sightline bench --scene rooms,boxes --scene city-block --table eovc-2").unwrap();
-        assert_eq!(two.scene.scene, ["rooms", "boxes", "city-block"]);
+        assert_eq!(two.scene.scenes(), ["rooms", "boxes", "city-block"]);
         assert!(two.scene.one_scene().unwrap_err().to_string().contains("give one scene"));
         for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
             assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
         }
+    }
+
+    #[test]
+    fn a_file_whose_name_holds_a_comma_is_taken_whole_where_it_is_there() {
+        let folder = std::env::temp_dir().join(format!("sightline-commas-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("red, green.glb");
+        let given = |file: &Path| {
+            let line = ["sightline", "shot", "--scene", file.to_str().unwrap(), "--scene", "rooms,boxes"];
+            match Cli::parse_from(line).command {
+                Command::Shot(arguments) => arguments.scene.scenes().into_iter().map(str::to_owned).collect::<Vec<_>>(),
+                other => panic!("{other:?}"),
+            }
+        };
+        let parts: Vec<String> = file.to_str().unwrap().split(',').map(|part| part.trim().to_owned()).collect();
+        assert_eq!(given(&file), [parts[0].as_str(), "green.glb", "rooms", "boxes"]);
+        std::fs::write(&file, "").unwrap();
+        let found = given(&file);
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(found, [file.to_str().unwrap(), "rooms", "boxes"]);
     }
 
     #[test]
