@@ -102,10 +102,17 @@ pub struct CameraPath {
 
 #[derive(Clone, Debug)]
 enum Course {
-    Animated { motion: Motion, node: usize },
+    Animated {
+        motion: Motion,
+        node: usize,
+    },
     Along(Way),
-    Around { centre: DVec3 },
-    Forward { metres: f64 },
+    Around {
+        centre: DVec3,
+    },
+    Forward {
+        metres: f64,
+    },
     Pan,
     Zoom,
     Rotate,

@@ -96,7 +96,8 @@ fn cuts_are_somewhere_else_in_each_frame_of_the_walk() {
             let off = walked.iter().map(|at| at.distance(place)).fold(f64::INFINITY, f64::min);
             assert!(off < 0.01 * span, "{name}, frame {frame}: {off} m off the walk");
             let turn = |other: &Shot| shot.pose.rotation.angle_between(other.pose.rotation);
-            let is_other = |other: &Shot, far: f64| place.distance(other.pose.position) > far * span || turn(other) > 0.2;
+            let is_other =
+                |other: &Shot, far: f64| place.distance(other.pose.position) > far * span || turn(other) > 0.2;
             assert!(frame == 0 || is_other(&shots[frame - 1], 0.2), "{name}, frame {frame} is near the one before");
             assert!(shots[..frame].iter().all(|other| is_other(other, 1e-4)), "{name}, frame {frame} was there before");
             // Neither the run's length nor another run moves it.

@@ -5,6 +5,8 @@ mod device;
 mod methods;
 mod stress;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
@@ -17,8 +19,8 @@ use crate::tables::TABLES;
 use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use culling::world::DETAIL_OPTION;
-use culling::METHODS;
+use culling::world::{DETAIL_OPTION, SKIP_OPTION};
+use culling::{OptionInfo, METHODS};
 use scenes::SceneOptions;
 use std::path::{Path, PathBuf};
 
@@ -111,15 +113,22 @@ pub struct MethodChoice {
     /// Leave out what is smaller on the screen than PX pixels, in all methods but none and ref: their option `detail`
     #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "table")]
     pub detail: u32,
+    /// Run every stage in every frame, also where it cannot change the result: sets the option `skip` of every method that
+    /// has it to false
+    #[arg(long)]
+    pub no_skip: bool,
 }
 
 impl MethodChoice {
-    /// What is set: `--detail` for every method that has it, then each `--set`.
+    /// What is set: `--detail` and `--no-skip` for every method that has those options, then each `--set`.
     pub fn sets(&self) -> Vec<String> {
-        let has_it = |entry: &&culling::Entry| entry.options.contains(&DETAIL_OPTION);
-        let detailed =
-            METHODS.iter().filter(has_it).map(|entry| format!("{}.{}={}", entry.id, DETAIL_OPTION.name, self.detail));
-        detailed.filter(|_| self.detail > 0).chain(self.set.iter().cloned()).collect()
+        let all = |option: OptionInfo, value: String| {
+            let having = METHODS.iter().filter(move |entry| entry.options.contains(&option));
+            having.map(move |entry| format!("{}.{}={value}", entry.id, option.name))
+        };
+        let detailed = all(DETAIL_OPTION, self.detail.to_string()).filter(|_| self.detail > 0);
+        let skipped = all(SKIP_OPTION, "false".to_owned()).filter(|_| self.no_skip);
+        detailed.chain(skipped).chain(self.set.iter().cloned()).collect()
     }
 }
 
@@ -152,7 +161,8 @@ pub struct BenchArgs {
     /// Captures this frame of each method with RenderDoc
     #[arg(long, value_name = "FRAME")]
     pub capture: Option<usize>,
-    /// Prints each stage: ran or skipped, why, and its time; then the parts of the frame with their share
+    /// Prints each stage: ran or skipped, its time, what skipping it saves a frame, and why it was skipped; then the parts of
+    /// the frame with their share, and what `auto` chose
     #[arg(long)]
     pub explain: bool,
     /// Leaves out report.html, and the pictures that are collected for it
@@ -309,9 +319,9 @@ impl SceneChoice {
 }
 
 fn table_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(TABLES.iter().map(|table| {
-        PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))
-    }))
+    PossibleValuesParser::new(
+        TABLES.iter().map(|table| PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))),
+    )
 }
 
 fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
@@ -320,69 +330,5 @@ fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
     match parts {
         Some(size) if !size.contains(&0) => Ok(size),
         _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn one_command_takes_one_scene_and_a_table_several() {
-        let bench = |line: &str| match Cli::try_parse_from(line.split(' ')).map(|cli| cli.command) {
-            Ok(Command::Bench(arguments)) => Ok(arguments),
-            other => Err(format!("{other:?}")),
-        };
-        assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), "city-block");
-        let two = bench("sightline bench --scene rooms,boxes --scene city-block --table eovc-2").unwrap();
-        assert_eq!(two.scene.scenes(), ["rooms", "boxes", "city-block"]);
-        assert!(two.scene.one_scene().unwrap_err().to_string().contains("give one scene"));
-        for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
-            assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
-        }
-    }
-
-    #[test]
-    fn a_file_whose_name_holds_a_comma_is_taken_whole_where_it_is_there() {
-        let folder = std::env::temp_dir().join(format!("sightline-commas-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        let file = folder.join("red, green.glb");
-        let given = |file: &Path| {
-            let line = ["sightline", "shot", "--scene", file.to_str().unwrap(), "--scene", "rooms,boxes"];
-            match Cli::parse_from(line).command {
-                Command::Shot(arguments) => arguments.scene.scenes().into_iter().map(str::to_owned).collect::<Vec<_>>(),
-                other => panic!("{other:?}"),
-            }
-        };
-        let parts: Vec<String> = file.to_str().unwrap().split(',').map(|part| part.trim().to_owned()).collect();
-        assert_eq!(given(&file), [parts[0].as_str(), "green.glb", "rooms", "boxes"]);
-        std::fs::write(&file, "").unwrap();
-        let found = given(&file);
-        std::fs::remove_dir_all(&folder).unwrap();
-        assert_eq!(found, [file.to_str().unwrap(), "rooms", "boxes"]);
-    }
-
-    #[test]
-    fn a_level_of_detail_reaches_the_session() {
-        let level = |line: &str| match Cli::parse_from(line.split(' ')).command {
-            Command::Shot(arguments) => arguments.scene.session().unwrap().detail,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(level("sightline shot"), SceneOptions::default().detail);
-        assert_eq!(level("sightline shot --scene powerplant --detail-level 3"), 3);
-    }
-
-    #[test]
-    fn sizes_are_read_or_refused() {
-        assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
-        for bad in ["0x5", "12", "axb", "-1x5", "1x2x3"] {
-            assert!(parse_size(bad).is_err(), "{bad}");
-        }
     }
 }

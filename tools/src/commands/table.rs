@@ -21,7 +21,7 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
     if arguments.no_metrics && table.needs_truth() {
         bail!("--no-metrics: table {id} shows what is culled or wrong, which needs the truth; leave --no-metrics out");
     }
-    let plan = table.plan(&arguments.methods.set)?;
+    let plan = table.plan(&arguments.methods.sets())?;
     let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
@@ -176,7 +176,8 @@ mod tests {
     #[test]
     fn a_table_goes_its_papers_path_unless_told_otherwise() {
         let all = sessions("--table eovc-2").unwrap();
-        let folders = |all: &[(String, SessionOptions)]| all.iter().map(|(folder, _)| folder.clone()).collect::<Vec<_>>();
+        let folders =
+            |all: &[(String, SessionOptions)]| all.iter().map(|(folder, _)| folder.clone()).collect::<Vec<_>>();
         assert_eq!(folders(&all), ["fantasy", "factory", "radial-city", "satellite"]);
         assert_eq!(folders(&sessions("--table woc-3").unwrap()), ["city-block", "balloons", "powerplant", "monsters"]);
         assert_eq!(folders(&sessions("--table tog-2").unwrap()), ["monsters"], "of others nothing is published");

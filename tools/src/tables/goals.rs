@@ -55,7 +55,12 @@ const HEADS: [&str; 4] = ["over ref", "spread over ref's", "over best fixed", "o
 impl Goals {
     /// The goals of one row: over the limit, spread, over the best of the others, over the base. None where one is not for
     /// this row or something did not run.
-    pub(super) fn judge(&self, variant: usize, method: impl Fn(&str) -> Option<Method>, heads: &[&str]) -> [Option<Judged>; 4] {
+    pub(super) fn judge(
+        &self,
+        variant: usize,
+        method: impl Fn(&str) -> Option<Method>,
+        heads: &[&str],
+    ) -> [Option<Judged>; 4] {
         let (Some(of), limit, base) = (method(self.of), method(self.limit), method(self.base)) else {
             return [None, None, None, None];
         };
@@ -151,7 +156,8 @@ pub(super) fn goals_text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>]) -> Vec
     let mut lines = vec![String::new(), format!("goals of {}", goals.of)];
     lines.extend(grid.lines("figure, sign, goal"));
     lines.push(String::new());
-    lines.push(format!("{} goals: {met} met (<=), {unsure} not surely missed (?), {missed} missed (>)", verdicts.len()));
+    lines
+        .push(format!("{} goals: {met} met (<=), {unsure} not surely missed (?), {missed} missed (>)", verdicts.len()));
     lines.extend(what_they_are(&goals));
     lines
 }

@@ -4,7 +4,7 @@
 use super::goals::goals_text;
 use super::measure::decimal;
 use super::{Column, Measure, Paper, PaperScene, Place, Plan, Published, Ran, Ratio, Table};
-use crate::grid::Grid;
+use crate::grid::{clipped, Grid};
 use crate::results::Results;
 
 /// The table of some runs: by scene, those of the plan. Fits 120 columns.
@@ -114,7 +114,11 @@ fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<String> {
         let (variant, column) = (place / columns, place % columns);
         let times = table.columns[column].shows.iter().enumerate().filter(|(_, measure)| measure.is_time());
         let ratios: Vec<String> = times.map(|(number, _)| two_decimals(one(variant, column, number))).collect();
-        if ratios.is_empty() { "-".to_owned() } else { ratios.join(" ") }
+        if ratios.is_empty() {
+            "-".to_owned()
+        } else {
+            ratios.join(" ")
+        }
     };
     (0..table.variants.len() * columns).map(cell).collect()
 }
@@ -165,10 +169,13 @@ fn run_lines(runs: &[&Results]) -> Vec<String> {
             lines.push(device);
         }
         let size = |run: &Results| format!("{} frames of {}x{}", run.frames, run.size[0], run.size[1]);
-        let alike: Vec<&&Results> =
-            runs.iter().filter(|other| (&other.scene.name, size(other)) == (&run.scene.name, size(run))).collect();
-        let paths: Vec<&str> = alike.iter().map(|other| other.path.as_str()).collect();
-        let line = format!("{}: path {} · {}", run.scene.name, paths.join(", "), size(run));
+        let mut paths: Vec<&str> = Vec::new();
+        for other in runs.iter().filter(|other| (&other.scene.name, size(other)) == (&run.scene.name, size(run))) {
+            if !paths.contains(&other.path.as_str()) {
+                paths.push(&other.path);
+            }
+        }
+        let line = clipped(&format!("{}: path {} · {}", run.scene.name, paths.join(", "), size(run)));
         if !lines.contains(&line) {
             lines.push(line);
         }
