@@ -67,6 +67,9 @@ const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texe
     woc-*, tog-* and lean walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
 
+/// Frames of the warm-up unless told otherwise: pipelines are compiled, and methods have a past.
+const WARMUP: usize = 3;
+
 /// Which scene, path and picture size.
 #[derive(Args, Clone, Debug)]
 pub struct SceneChoice {
@@ -104,8 +107,8 @@ pub struct SceneChoice {
 /// Which methods.
 #[derive(Args, Clone, Debug)]
 pub struct MethodChoice {
-    /// Methods, separated by commas, or `all`
-    #[arg(long, value_name = "A,B,C|all", default_value = "all", conflicts_with = "table")]
+    /// Methods, separated by commas, or `all`; if left out, the default method between what it is to be compared with
+    #[arg(long, value_name = "A,B,C|all", default_value_t = default_methods(), conflicts_with = "table")]
     pub method: String,
     /// Sets a method's option; may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
@@ -152,9 +155,9 @@ pub struct BenchArgs {
     /// Device.
     #[command(flatten)]
     pub device: DeviceArgs,
-    /// Frames run before the clock starts
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub warmup: u32,
+    /// Frames run before the clock starts; 3 if left out, and 12 of the table `lean`, in which `auto` tries what there is
+    #[arg(long, value_name = "N")]
+    pub warmup: Option<u32>,
     /// Only times: leave out the truth, the errors and the pictures' measures
     #[arg(long)]
     pub no_metrics: bool,
@@ -223,7 +226,7 @@ pub struct ShotArgs {
     #[command(flatten)]
     pub device: DeviceArgs,
     /// The method that draws it
-    #[arg(long, value_name = "METHOD", default_value = "none")]
+    #[arg(long, value_name = "METHOD", default_value = culling::default_method().id)]
     pub method: String,
     /// Sets the method's option, or how depth is warped for a view of that (warp.seeds=8); may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
@@ -263,6 +266,13 @@ pub enum SceneAction {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
+}
+
+impl BenchArgs {
+    /// Frames of the warm-up, where a table has so many of its own.
+    pub fn warmup(&self, of_table: Option<usize>) -> usize {
+        self.warmup.map_or(of_table.unwrap_or(WARMUP), |frames| frames as usize)
+    }
 }
 
 impl SceneChoice {
@@ -316,6 +326,11 @@ impl SceneChoice {
             size: self.size,
         }
     }
+}
+
+/// Nothing, the least, the default, and the limit.
+fn default_methods() -> String {
+    format!("none,frustum,{},ref", culling::default_method().id)
 }
 
 fn table_names() -> PossibleValuesParser {

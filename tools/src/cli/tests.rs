@@ -73,6 +73,22 @@ fn a_level_of_detail_reaches_the_session() {
 }
 
 #[test]
+fn auto_is_the_default_choice_and_a_warm_up_the_tables() {
+    let bench = |line: &str| match Cli::parse_from(line.split(' ')).command {
+        Command::Bench(arguments) => arguments,
+        other => panic!("{other:?}"),
+    };
+    let usual = bench("sightline bench");
+    assert_eq!(usual.methods.method, "none,frustum,auto,ref");
+    assert_eq!((usual.warmup(None), usual.warmup(Some(12))), (3, 12));
+    assert_eq!(bench("sightline bench --warmup 5").warmup(Some(12)), 5);
+    match Cli::parse_from(["sightline", "shot"]).command {
+        Command::Shot(arguments) => assert_eq!(arguments.method, culling::default_method().id),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn sizes_are_read_or_refused() {
     assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
     for bad in ["0x5", "12", "axb", "-1x5", "1x2x3"] {

@@ -25,6 +25,7 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
     let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
+    let warmup = arguments.warmup(table.warmup());
     let (mut done, all) = (0, sessions.len() * plan.runs.len());
     for (folder, session) in sessions {
         let mut runs = Vec::new();
@@ -32,7 +33,7 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
             let mut session = session.clone();
             planned.change.make(&mut session);
             done += 1;
-            let ran = run_planned(&gpu, arguments, session, planned, &format!("run {done} of {all}"))?;
+            let ran = run_planned(&gpu, arguments, session, planned, (&format!("run {done} of {all}"), warmup))?;
             let folder = arguments.out.join(&folder);
             save(&ran, &planned.change.folder().map_or(folder.clone(), |below| folder.join(below)))?;
             explain(arguments, &ran.results)?;
@@ -50,7 +51,7 @@ fn run_planned(
     arguments: &BenchArgs,
     session: SessionOptions,
     planned: &PlannedRun,
-    place: &str,
+    (place, warmup): (&str, usize),
 ) -> Result<Ran> {
     let name = format!("{place}: {}", session.scene);
     let mut session = Session::on(gpu, session)?;
@@ -73,7 +74,7 @@ fn run_planned(
     } else {
         let options = BenchOptions {
             methods: planned.methods.clone(),
-            warmup: arguments.warmup as usize,
+            warmup,
             metrics: !arguments.no_metrics,
             pairs: planned.pairs.clone(),
             capture: None,

@@ -61,6 +61,8 @@ pub enum Source {
         scenes: &'static [&'static str],
         /// The path where no row names another, and whether a run goes the whole of it.
         path: (&'static str, bool),
+        /// Frames of the warm-up where the user names no number.
+        warmup: usize,
     },
 }
 
@@ -275,6 +277,14 @@ impl Table {
         match self.source {
             Source::Paper(paper, _) => paper.path,
             Source::Ours { path, .. } => path,
+        }
+    }
+
+    /// Frames of the warm-up where the user names no number, if the table has its own.
+    pub fn warmup(&self) -> Option<usize> {
+        match self.source {
+            Source::Paper(..) => None,
+            Source::Ours { warmup, .. } => Some(warmup),
         }
     }
 
