@@ -19,6 +19,7 @@ use crate::tables::TABLES;
 use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
 use culling::{OptionInfo, METHODS};
 use scenes::SceneOptions;
@@ -116,6 +117,10 @@ pub struct MethodChoice {
     /// Leave out what is smaller on the screen than PX pixels, in all methods but none and ref: their option `detail`
     #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "table")]
     pub detail: u32,
+    /// Let `auto` use woc too, which may miss objects, while its checked frames (one in 16) miss no more than PERCENT of theirs: sets
+    /// auto.allow-error. Without it `auto` is exact
+    #[arg(long, value_name = "PERCENT", value_parser = PossibleValuesParser::new(ALLOW_ERROR_OPTION.values.split('|')))]
+    pub allow_error: Option<String>,
     /// Run every stage in every frame, also where it cannot change the result: sets the option `skip` of every method that
     /// has it to false
     #[arg(long)]
@@ -131,7 +136,8 @@ impl MethodChoice {
         };
         let detailed = all(DETAIL_OPTION, self.detail.to_string()).filter(|_| self.detail > 0);
         let skipped = all(SKIP_OPTION, "false".to_owned()).filter(|_| self.no_skip);
-        detailed.chain(skipped).chain(self.set.iter().cloned()).collect()
+        let allowed = self.allow_error.iter().flat_map(|percent| all(ALLOW_ERROR_OPTION, percent.clone()));
+        detailed.chain(skipped).chain(allowed).chain(self.set.iter().cloned()).collect()
     }
 }
 

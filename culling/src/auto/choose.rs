@@ -137,6 +137,8 @@ impl Cost {
 #[derive(Clone, Debug)]
 pub struct Chooser {
     memories: Vec<Memory>,
+    /// Candidates that may not be used now.
+    barred: Vec<bool>,
     costs: Vec<[Cost; 3]>,
     current: Option<Choice>,
     /// By pace, what is used when nothing is on trial.
@@ -154,7 +156,13 @@ impl Chooser {
     pub fn new(memories: Vec<Memory>) -> Self {
         assert!(!memories.is_empty(), "there must be something to choose from");
         let costs = memories.iter().map(|_| Default::default()).collect();
-        Chooser { memories, costs, current: None, settled: [None; 3], outdone: [0; 3], drifted: 0 }
+        let barred = vec![false; memories.len()];
+        Chooser { memories, barred, costs, current: None, settled: [None; 3], outdone: [0; 3], drifted: 0 }
+    }
+
+    /// A candidate may not be used from now on, or may again. The first always may.
+    pub fn bar(&mut self, candidate: usize, barred: bool) {
+        self.barred[candidate] = barred && candidate > 0;
     }
 
     /// What the next frame will use at this pace. Changes nothing.
@@ -175,6 +183,7 @@ impl Chooser {
         }
         let best = self.best(pace);
         match self.settled[pace as usize] {
+            Some(settled) if self.barred[settled] => choice(best, Reason::Cheaper),
             Some(settled) if !self.is_outdone(pace) || self.outdone[pace as usize] + 1 < PATIENCE => {
                 choice(settled, Reason::Kept)
             }
@@ -280,7 +289,9 @@ impl Chooser {
     }
 
     fn worth_trying(&self, pace: Pace) -> impl Iterator<Item = usize> + '_ {
-        let is_worth = move |candidate: &usize| pace == Pace::Calm || self.memories[*candidate] != Memory::Needs;
+        let is_worth = move |candidate: &usize| {
+            !self.barred[*candidate] && (pace == Pace::Calm || self.memories[*candidate] != Memory::Needs)
+        };
         (0..self.memories.len()).filter(is_worth)
     }
 

@@ -58,6 +58,11 @@ fn no_skip_reaches_every_method_that_can_skip_and_no_other() {
         let skips = entry.options.contains(&SKIP_OPTION);
         assert_eq!(label.contains("skip=false"), skips, "{label}");
     }
+    assert_eq!(labels("sightline bench --method hzb,auto --allow-error 0.5"), ["hzb", "auto[allow-error=0.5]"]);
+    assert!(
+        Cli::try_parse_from("sightline bench --allow-error 7".split(' ')).is_err(),
+        "a percentage that is not offered"
+    );
     // What is set by hand comes later, and holds.
     assert_eq!(labels("sightline bench --method hzb --no-skip --set hzb.skip=true"), ["hzb"]);
 }

@@ -180,6 +180,20 @@ fn an_oscillating_scene_costs_little_more_than_the_better_fixed_choice() {
 }
 
 #[test]
+fn who_is_barred_is_not_used_and_comes_back_when_it_may() {
+    let ms = |candidate: usize, _: usize| [24.0, 12.0, 90.0][candidate];
+    let mut chooser = Chooser::new(MEMORIES.into());
+    assert!(run(&mut chooser, 0..20, calm, ms)[12..].iter().all(|candidate| *candidate == EOVC));
+    chooser.bar(EOVC, true);
+    assert!(run(&mut chooser, 20..200, calm, ms).iter().all(|candidate| *candidate != EOVC));
+    chooser.bar(EOVC, false);
+    assert!(run(&mut chooser, 200..240, calm, ms)[20..].iter().all(|candidate| *candidate == EOVC));
+    // The first is what is left when all else is barred.
+    (0..3).for_each(|candidate| chooser.bar(candidate, true));
+    assert!(run(&mut chooser, 240..260, calm, ms).iter().all(|candidate| *candidate == ITERATIVE));
+}
+
+#[test]
 fn without_measures_the_first_candidate_stays() {
     let mut chooser = Chooser::new(MEMORIES.into());
     for pace in [Pace::Calm, Pace::Cut, Pace::Hurried, Pace::Calm] {
