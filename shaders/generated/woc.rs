@@ -66,9 +66,12 @@ const _: () = {
     assert!(size_of::<ExcludeObjectsPush>() == 4);
 };
 
-/// Which objects of the last frame have moved so far since then that warping may fail for them? Those of whose
-/// box a corner moved farther than the threshold in the canonical view volume (-1 to 1 in x and y, 0 to 1 in depth), or lies
-/// behind the eye before or after (Kim 2015, IV.1). Twin: culling/src/woc/twin.rs
+/// Which objects of the last frame have moved so far since then that warping may fail for them? Those of whose box a
+/// corner moved, seen by an eye that only steps and does not turn, farther than the threshold in the canonical view volume (-1 to 1
+/// in x and y, 0 to 1 in depth), or lies behind the eye before or after (Kim 2015, IV.1). Twin: culling/src/woc/twin.rs
+///
+/// The thesis counts what a turn of the camera does to a corner too: then everything is rapid, and half the scene is drawn first.
+/// But a turn is warped exactly. What a step does stays counted: to draw that first measures better (culling/README.md).
 ///
 /// Only what the last frame drew is looked at, by its draw list: invocations stride over the commands that count.
 #[derive(Clone, Copy, Debug)]

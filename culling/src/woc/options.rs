@@ -32,7 +32,7 @@ pub(super) const RAPID: OptionInfo = OptionInfo {
     name: "rapid",
     default: "0.02",
     values: "0|0.005|0.01|0.02|0.04|0.08",
-    help: "draw first what moved farther than this in the canonical view volume; 0 draws nothing first",
+    help: "draw first what moved farther than this in the canonical view volume, turns of the camera left out; 0 draws nothing first",
 };
 
 /// Costly objects that must prove by their box that they show.

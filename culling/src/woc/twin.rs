@@ -26,18 +26,21 @@ fn corner_of(clip: &ClipBox, corner: u32) -> Vec4 {
     clip.centre + signed(0) + signed(1) + signed(2)
 }
 
-/// A corner moved farther than `threshold` in the canonical view volume, or lies behind the eye. Twin of `is_rapid`.
+/// A corner moved farther than `threshold` in the canonical view volume, seen by an eye that only steps and does not turn, or lies
+/// behind the eye. Twin of `is_rapid`.
 pub fn is_rapid(ways: &Ways<'_>, object: usize, threshold: f32) -> bool {
     if ways.now[object].flags & OBJECT_ALWAYS_KEPT != 0 {
         return false;
     }
-    let from = clip_from_bounds(&ways.before[object], ways.views[0]);
-    let to = clip_from_bounds(&ways.now[object], ways.views[1]);
+    let [last, this] = ways.views;
+    let turned = CullView { camera_high: last.camera_high, camera_low: last.camera_low, ..*this };
+    let from = clip_from_bounds(&ways.before[object], &turned);
+    let to = clip_from_bounds(&ways.now[object], this);
     (0..8).any(|corner| {
         let (start, end) = (corner_of(&from, corner), corner_of(&to, corner));
         let way = end.truncate() / end.w - start.truncate() / start.w;
-        let slow = start.w > 0.0 && end.w > 0.0 && way.length_squared() <= threshold * threshold;
-        !slow
+        let is_slow = start.w > 0.0 && end.w > 0.0 && way.length_squared() <= threshold * threshold;
+        !is_slow
     })
 }
 

@@ -1,6 +1,9 @@
-// woc/find_rapid: which objects of the last frame have moved so far since then that warping may fail for them? Those of whose
-// box a corner moved farther than the threshold in the canonical view volume (-1 to 1 in x and y, 0 to 1 in depth), or lies
-// behind the eye before or after (Kim 2015, IV.1). Twin: culling/src/woc/twin.rs
+// woc/find_rapid: which objects of the last frame have moved so far since then that warping may fail for them? Those of whose box a
+// corner moved, seen by an eye that only steps and does not turn, farther than the threshold in the canonical view volume (-1 to 1
+// in x and y, 0 to 1 in depth), or lies behind the eye before or after (Kim 2015, IV.1). Twin: culling/src/woc/twin.rs
+//
+// The thesis counts what a turn of the camera does to a corner too: then everything is rapid, and half the scene is drawn first.
+// But a turn is warped exactly. What a step does stays counted: to draw that first measures better (culling/README.md).
 //
 // Only what the last frame drew is looked at, by its draw list: invocations stride over the commands that count.
 #version 460
@@ -28,7 +31,11 @@ vec4 corner_of(ClipBox box, uint corner) {
 
 bool is_rapid(Bounds before, Bounds now) {
     if ((now.flags & OBJECT_ALWAYS_KEPT) != 0u) return false;
-    ClipBox from = clip_from_bounds(before, views.items[0]);
+    // How the last frame's eye would see, turned as this frame's is.
+    CullView turned = views.items[1];
+    turned.camera_high = views.items[0].camera_high;
+    turned.camera_low = views.items[0].camera_low;
+    ClipBox from = clip_from_bounds(before, turned);
     ClipBox to = clip_from_bounds(now, views.items[1]);
     bool far_enough = false;
     for (uint corner = 0u; corner < 8u; corner++) {

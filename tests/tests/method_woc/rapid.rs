@@ -24,7 +24,7 @@ struct Input {
     kept: Vec<u32>,
 }
 
-/// Boxes by chance, some of which moved a little, before a camera that did; every other one was drawn.
+/// Boxes by chance, a third of which moved, before a camera that did too; every other one was drawn.
 fn input(random: &mut Random, gpu: &Gpu) -> Input {
     let pose = Pose { position: random.vector() * 100.0, rotation: random.turn() };
     let shot = Shot { pose, projection: PERSPECTIVE, seconds: 0.0 };
@@ -121,6 +121,28 @@ fn a_box_that_holds_still_is_not_rapid_and_one_behind_the_eye_is() {
     assert!(!rapid(0.0, 0.001));
     assert!(rapid(0.0, 1.0));
     assert!(rapid(5.0, 5.0), "around the eye");
+}
+
+/// It once did: a camera that turned drew half the scene first.
+#[test]
+fn a_camera_that_turns_makes_nothing_rapid_and_one_that_hurries_does() {
+    let gpu = gpu();
+    let look = |position: DVec3, turn: f64| {
+        let pose = Pose { position, rotation: DQuat::from_rotation_y(turn) };
+        View::new(&Shot { pose, projection: PERSPECTIVE, seconds: 0.0 }, SIZE, 0, gpu.snap_px()).cull()
+    };
+    let still = vec![Bounds { centre_high: [0.3, -0.2, -4.0], half_extent: [0.5; 3], ..Bounds::default() }];
+    let rapid = |view: CullView| {
+        let views = [&look(DVec3::ZERO, 0.0), &view];
+        is_rapid(&Ways { before: &still, now: &still, views }, 0, 0.02)
+    };
+    for turn in [-0.6, -0.3, 0.3, 0.6] {
+        assert!(!rapid(look(DVec3::ZERO, turn)), "a turn");
+        assert!(!rapid(look(DVec3::X * 0.01, turn)), "a turn and a step aside");
+        assert!(rapid(look(DVec3::X * 0.3, turn)), "a turn and a leap aside");
+    }
+    assert!(!rapid(look(DVec3::NEG_Z * 0.01, 0.0)), "a step ahead");
+    assert!(rapid(look(DVec3::NEG_Z * 2.0, 0.0)), "twice as near");
 }
 
 #[test]
