@@ -100,7 +100,7 @@ fn errors_are_made_only_where_they_are_allowed_and_checked_frames_make_none() {
     }
 }
 
-/// Where all moves quickly, `woc` errs by a tenth of a percent and more: the first check that is judged ends it, if no more is allowed than that.
+/// Where all moves quickly, `woc` errs by a tenth of a percent and more: a check that finds that ends it, where less is allowed.
 #[test]
 fn who_errs_more_than_is_allowed_is_not_used_any_more() {
     let balloons = ("moving-balloons", 0.3, "still");
@@ -110,7 +110,7 @@ fn who_errs_more_than_is_allowed_is_not_used_any_more() {
     };
     let (allowed, chosen) = used("1");
     assert!(allowed > 20, "{chosen:?}");
-    let (forbidden, chosen) = used("0.1");
-    // Its first frame is not judged.
-    assert_eq!(forbidden, 2, "{chosen:?}");
+    let (forbidden, chosen) = used("0.05");
+    // Its first frame is not judged; the second is, and the sixteenth.
+    assert!([2, 16].contains(&forbidden) && chosen[30..].iter().all(|id| id != "woc"), "{forbidden}: {chosen:?}");
 }

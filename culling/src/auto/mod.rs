@@ -41,8 +41,13 @@ pub const OPTIONS: &[OptionInfo] = &[
 ];
 
 /// What is chosen from. The first is used until anything is measured.
-const CANDIDATES: [(&str, Memory); 3] =
-    [("hzb-iterative", Memory::Helps), ("eovc", Memory::Needs), ("frustum", Memory::None)];
+const CANDIDATES: [(&str, Memory); 4] = [
+    ("hzb-iterative", Memory::Helps),
+    ("eovc", Memory::Needs),
+    ("frustum", Memory::None),
+    // Where little is hidden and objects are few: monsters.
+    ("roc-iterative", Memory::Helps),
+];
 
 /// What is chosen from beside them where errors are allowed.
 const CHECKED: (&str, Memory) = ("woc", Memory::Needs);
