@@ -23,7 +23,7 @@ pub mod world;
 
 pub use error::Error;
 pub use method::{Guarantee, Method, Setup, TestedBoxes, Work};
-pub use methods::{find, Entry, METHODS};
+pub use methods::{default_method, find, Entry, METHODS};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;
 pub use reference::VisibleSets;

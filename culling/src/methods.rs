@@ -136,6 +136,11 @@ pub fn find(name: &str) -> Result<&'static Entry> {
     })
 }
 
+/// The method to use where nobody says which: `auto`, exact and as fast as any.
+pub fn default_method() -> &'static Entry {
+    &METHODS[METHODS.iter().position(|entry| entry.id == "auto").unwrap_or(0)]
+}
+
 impl Entry {
     /// The method's options, all at their defaults.
     pub fn default_options(&self) -> Options {

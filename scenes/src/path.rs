@@ -27,6 +27,8 @@ use way::Way;
 const RUN_S: f64 = 16.0;
 /// Frames of a run that goes the whole way at speed 1: 16 s at 60 Hz, as in Kim 2015, V.
 const RUN_FRAMES: f64 = 960.0;
+/// How far `cuts` goes on from frame to frame, as a part of the way: the golden section, which comes near no place again soon.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// How far `zoom` narrows the field of view.
 const ZOOM: f64 = 4.0;
 
@@ -47,12 +49,14 @@ pub enum PathKind {
     ClosingIn,
     /// Stands still.
     Still,
+    /// Is somewhere else in each frame, scattered over the way of the scene's camera or walk.
+    Cuts,
     /// Follows a recorded file.
     Recorded,
 }
 
 impl PathKind {
-    /// The paths that every scene has.
+    /// The paths that every scene has and that go on steadily: all but [`PathKind::Cuts`].
     pub const EVERYWHERE: [PathKind; 6] =
         [PathKind::Walk, PathKind::Pan, PathKind::Zoom, PathKind::Rotate, PathKind::ClosingIn, PathKind::Still];
 
@@ -66,6 +70,7 @@ impl PathKind {
             PathKind::Rotate => "rotate",
             PathKind::ClosingIn => "closing-in",
             PathKind::Still => "still",
+            PathKind::Cuts => "cuts",
             PathKind::Recorded => "recorded",
         }
     }
@@ -97,15 +102,24 @@ pub struct CameraPath {
 
 #[derive(Clone, Debug)]
 enum Course {
-    Animated { motion: Motion, node: usize },
+    Animated {
+        motion: Motion,
+        node: usize,
+    },
     Along(Way),
-    Around { centre: DVec3 },
-    Forward { metres: f64 },
+    Around {
+        centre: DVec3,
+    },
+    Forward {
+        metres: f64,
+    },
     Pan,
     Zoom,
     Rotate,
     ClosingIn,
     Still,
+    /// This course, out of order.
+    Scattered(Box<Course>),
     Recorded(Recording),
 }
 
@@ -122,7 +136,7 @@ impl CameraPath {
     /// The names that [`CameraPath::named`] takes for a scene, its default first.
     pub fn names(scene: &Scene) -> Vec<&'static str> {
         let animated = animated_camera(scene).map(|_| PathKind::Camera);
-        animated.into_iter().chain(PathKind::EVERYWHERE).map(PathKind::name).collect()
+        animated.into_iter().chain(PathKind::EVERYWHERE).chain([PathKind::Cuts]).map(PathKind::name).collect()
     }
 
     /// A path by name; without a name the scene's animated camera, or a walk if it has none.
@@ -135,8 +149,11 @@ impl CameraPath {
         let name = name.unwrap_or(names[0]);
         let animated = animated_camera(scene);
         let base = Viewpoint::of(scene, animated.map_or(0, |(camera, _)| camera));
+        let by_camera = |node: usize| Course::Animated { motion: scene.motion.clone(), node };
         let course = match (name, animated) {
-            ("camera", Some((_, node))) => Course::Animated { motion: scene.motion.clone(), node },
+            ("camera", Some((_, node))) => by_camera(node),
+            ("cuts", Some((_, node))) => Course::Scattered(Box::new(by_camera(node))),
+            ("cuts", None) => Course::Scattered(Box::new(walk_of(scene, &base))),
             ("walk", _) => walk_of(scene, &base),
             ("pan", _) => Course::Pan,
             ("zoom", _) => Course::Zoom,
@@ -183,6 +200,7 @@ impl CameraPath {
             Course::Rotate => PathKind::Rotate,
             Course::ClosingIn => PathKind::ClosingIn,
             Course::Still => PathKind::Still,
+            Course::Scattered(_) => PathKind::Cuts,
             Course::Recorded(_) => PathKind::Recorded,
         }
     }
@@ -207,10 +225,16 @@ impl CameraPath {
     /// The camera in frame `frame` of a run of `frames`. At speed 1 a frame goes on by 1/960 of the way, whatever the
     /// run's length, so that motion from frame to frame is that of the papers' 16 second sequences. A recorded or animated
     /// path is spread over the run from first key to last instead, as is [`CameraPath::whole`]; both ends are included.
-    /// Frames past the last go on beyond.
+    /// Frames past the last go on beyond. On the path `cuts` the frame's number alone says where on the way it is: each
+    /// frame is 0.38 or 0.62 of the way from the one before, in scene time too, and no two are at one place.
     pub fn sample(&self, frame: usize, frames: usize) -> Shot {
+        let (course, is_scattered) = match &self.course {
+            Course::Scattered(course) => (course.as_ref(), true),
+            course => (course, false),
+        };
         let spread = self.whole || matches!(self.course, Course::Animated { .. } | Course::Recorded(_));
         let way = match (spread, frames) {
+            _ if is_scattered => (frame as f64 * GOLDEN).fract(),
             (true, ..2) => 0.0,
             (true, frames) => frame as f64 / (frames - 1) as f64,
             (false, _) => frame as f64 / RUN_FRAMES,
@@ -219,7 +243,9 @@ impl CameraPath {
         let seconds = self.clock.at(run);
         let Viewpoint { pose, projection, .. } = self.base;
         let mut shot = Shot { pose, projection, seconds };
-        match &self.course {
+        match course {
+            // It is one level deep.
+            Course::Scattered(_) | Course::Still => {}
             Course::Animated { motion, node } => shot.pose = motion.camera_pose_at(*node, seconds).unwrap_or(pose),
             Course::Along(way) => shot.pose = way.at(run),
             Course::Around { centre } => shot.pose = around(pose, *centre, 0.5 * run),
@@ -228,7 +254,6 @@ impl CameraPath {
             Course::Zoom => shot.projection = zoomed(projection, back_and_forth(2.0 * run)),
             Course::Rotate => shot.pose.rotation = DQuat::from_rotation_y(-TAU * run.fract()) * pose.rotation,
             Course::ClosingIn => shot = self.base.closing_in(back_and_forth(run), seconds),
-            Course::Still => {}
             Course::Recorded(recording) => {
                 let recorded = recording.at(back_and_forth(run));
                 shot = Shot {

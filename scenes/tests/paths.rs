@@ -81,6 +81,32 @@ fn no_path_jumps() {
 }
 
 #[test]
+fn cuts_are_somewhere_else_in_each_frame_of_the_walk() {
+    for scene in scenes() {
+        let at = |path: &CameraPath, frame: usize| path.sample(frame, FRAMES);
+        let cuts = CameraPath::named(&scene, Some("cuts"), 1.0).expect("every scene has it");
+        assert_eq!((cuts.kind(), cuts.describe().as_str()), (PathKind::Cuts, "cuts speed=1.0"));
+        // Finely enough that each cut lies near one of its places.
+        let walk = named(&scene, "walk", 1.0);
+        let walked: Vec<DVec3> = (0..2000).map(|frame| walk.sample(frame, 2000).pose.position).collect();
+        let span = walked.iter().map(|place| place.distance(walked[0])).fold(0.0, f64::max);
+        let shots: Vec<Shot> = (0..100).map(|frame| at(&cuts, frame)).collect();
+        for (frame, shot) in shots.iter().enumerate() {
+            let (name, place) = (&scene.name, shot.pose.position);
+            let off = walked.iter().map(|at| at.distance(place)).fold(f64::INFINITY, f64::min);
+            assert!(off < 0.01 * span, "{name}, frame {frame}: {off} m off the walk");
+            let turn = |other: &Shot| shot.pose.rotation.angle_between(other.pose.rotation);
+            let is_other =
+                |other: &Shot, far: f64| place.distance(other.pose.position) > far * span || turn(other) > 0.2;
+            assert!(frame == 0 || is_other(&shots[frame - 1], 0.2), "{name}, frame {frame} is near the one before");
+            assert!(shots[..frame].iter().all(|other| is_other(other, 1e-4)), "{name}, frame {frame} was there before");
+            // Neither the run's length nor another run moves it.
+            assert_eq!((cuts.sample(frame, 7), cuts.clone().whole().sample(frame, FRAMES)), (*shot, *shot));
+        }
+    }
+}
+
+#[test]
 fn speed_makes_the_way_longer_and_nothing_else() {
     for scene in scenes() {
         for kind in PathKind::EVERYWHERE {

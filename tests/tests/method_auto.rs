@@ -1,8 +1,11 @@
 //! The laws of `auto`. Its decisions are tested without a device (`culling/src/auto/choose/tests.rs`); here what it draws: candidates take
 //! turns in every frame, which is the most that decisions by time could do.
 
-use culling::drawn_objects;
+use culling::auto::trust::EVERY;
+use culling::{drawn_objects, Drawn};
 use sightline::run::Contender;
+use sightline::session::{Session, SessionOptions};
+use sightline::truth::RunTruth;
 
 harness::exact_method_tests!("auto");
 harness::skipping_method_tests!("auto");
@@ -46,4 +49,68 @@ fn a_repeated_run_draws_what_the_timed_one_drew() {
         assert!(choices.iter().any(|choice| choice.contains(id)), "{id} was never tried: {choices:#?}");
     }
     assert!(choices.iter().all(|choice| !choice.contains("took - ms")), "{choices:#?}");
+}
+
+const CALM: (&str, f64, &str) = ("city-block", 0.05, "walk");
+
+/// What was chosen in each frame, and what was drawn, when `woc` is said to take a quarter of what others take.
+fn film_where_woc_is_cheap(
+    (scene, scale, path): (&str, f64, &str),
+    speed: f64,
+    allow: &str,
+) -> (Vec<String>, Vec<Drawn>, RunTruth) {
+    const FRAMES: usize = 40;
+    let gpu = gpu();
+    let (scene, path) = (scene.to_owned(), Some(path.to_owned()));
+    let size = [320, 180];
+    let run = SessionOptions { scene, path, scale, speed, frames: FRAMES, size, ..SessionOptions::default() };
+    let mut session = Session::on(&gpu, run).unwrap();
+    let truth = RunTruth::draw(&mut session, || ()).unwrap();
+    let entry = culling::find("auto").unwrap();
+    let mut options = entry.default_options();
+    options.set("allow-error", allow).unwrap();
+    let mut auto = Contender::new(&session, entry, options, &None).unwrap();
+    let (mut chosen, mut drawn) = (Vec::new(), Vec::new());
+    for frame in 0..FRAMES {
+        // Staged frames are not measured: the times are made up.
+        let report = auto.staged(&mut session, frame).unwrap();
+        drawn.push(drawn_objects(&gpu, &session.world, &report).unwrap());
+        let choice = auto.method.choices().last().unwrap().clone();
+        let id = choice.split([':', ',']).nth(1).unwrap().trim().to_owned();
+        auto.method.measured(if id == "woc" { 5.0 } else { 20.0 });
+        chosen.push(id);
+    }
+    (chosen, drawn, truth)
+}
+
+#[test]
+fn errors_are_made_only_where_they_are_allowed_and_checked_frames_make_none() {
+    let (exact, ..) = film_where_woc_is_cheap(CALM, 1.0, "0");
+    assert!(exact.iter().all(|id| id != "woc"), "{exact:?}");
+    let (chosen, drawn, truth) = film_where_woc_is_cheap(CALM, 1.0, "10");
+    assert!(chosen[20..].iter().all(|id| id == "woc"), "{chosen:?}");
+    let began = chosen.iter().position(|id| id == "woc").unwrap();
+    for (frame, drawn) in drawn.iter().enumerate() {
+        let in_row = if chosen[frame] == "woc" { frame - began + 1 } else { 0 };
+        if in_row <= 2 || in_row % EVERY as usize == 0 {
+            let visible = truth.sets.frame(frame).unwrap();
+            let lost = (0..drawn.objects.len()).filter(|at| visible.contains(*at) && !drawn.objects[*at]).count();
+            assert_eq!(lost, 0, "frame {frame}, the {in_row}. of woc");
+        }
+    }
+}
+
+/// Where all moves quickly, `woc` errs by a tenth of a percent and more: a check that finds that ends it, where less is allowed.
+#[test]
+fn who_errs_more_than_is_allowed_is_not_used_any_more() {
+    let balloons = ("moving-balloons", 0.3, "still");
+    let used = |allow| {
+        let (chosen, ..) = film_where_woc_is_cheap(balloons, 32.0, allow);
+        (chosen.iter().filter(|id| *id == "woc").count(), chosen)
+    };
+    let (allowed, chosen) = used("1");
+    assert!(allowed > 20, "{chosen:?}");
+    let (forbidden, chosen) = used("0.05");
+    // Its first frame is not judged; the second is, and the sixteenth.
+    assert!([2, 16].contains(&forbidden) && chosen[30..].iter().all(|id| id != "woc"), "{forbidden}: {chosen:?}");
 }

@@ -69,6 +69,8 @@ struct Records {
     timed: Vec<FrameReport>,
     /// The same frames once more, with stage timers.
     staged: Vec<FrameReport>,
+    /// The frames of the warm-up before those.
+    warm: Vec<FrameReport>,
     errors: Vec<crate::metrics::FrameError>,
     triangles: Vec<u64>,
     draws: Vec<u64>,
@@ -149,6 +151,25 @@ fn repeat(session: &mut Session, contenders: &mut [Contender], warmup: usize) ->
     warm_up(session, contenders, warmup)
 }
 
+/// The same, with stage timers: what a stage costs that no measured frame runs is known from these.
+fn repeat_staged(
+    session: &mut Session,
+    contenders: &mut [Contender],
+    records: &mut [Records],
+    warmup: usize,
+) -> Result<()> {
+    for contender in contenders.iter_mut() {
+        contender.method.repeat();
+        contender.method.forget()?;
+    }
+    for frame in 0..warmup {
+        for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
+            records.warm.push(contender.staged(session, frame % session.frames())?);
+        }
+    }
+    Ok(())
+}
+
 fn time(
     session: &mut Session,
     contenders: &mut [Contender],
@@ -164,7 +185,7 @@ fn time(
         }
         progress("timing", frame + 1, session.frames());
     }
-    repeat(session, contenders, warmup)?;
+    repeat_staged(session, contenders, records, warmup)?;
     for frame in 0..session.frames() {
         for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
             records.staged.push(contender.staged(session, frame)?);
@@ -249,7 +270,7 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         guarantee: contender.guarantee().to_string(),
         frame_ms: FrameMs::from_samples(&frame_ms).unwrap_or_default(),
         host_ms: stats::median(&host_ms),
-        stages: stages(&records.staged),
+        stages: stages(&records.staged, &records.warm),
         triangles_mean: mean(&records.triangles),
         draws_mean: mean(&records.draws),
         overdraw_mean: stats::mean(&records.overdraw),

@@ -6,6 +6,8 @@ mod device;
 mod methods;
 mod stress;
 mod sweep;
+#[cfg(test)]
+mod tests;
 mod view;
 
 pub use compare::{CompareArgs, COMPARE_HELP};
@@ -21,10 +23,11 @@ use crate::tables::TABLES;
 use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use culling::world::DETAIL_OPTION;
-use culling::METHODS;
+use culling::auto::ALLOW_ERROR_OPTION;
+use culling::world::{DETAIL_OPTION, SKIP_OPTION};
+use culling::{OptionInfo, METHODS};
 use scenes::SceneOptions;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
 /// stage by stage, against the truth.
@@ -87,14 +90,18 @@ pub enum Command {
 const BENCH_HELP: &str = "Methods may carry options: --method 'none,hzb,hzb[texels=8]', or --set hzb.texels=8 for all of that name.\n\
     A table takes its methods and settings from the paper; --set adds what it leaves open (warp.OPTION for a warp on its own).\n\
     The path of eovc-* is spread over --frames: 600 is the thesis' speed (10 s at 60 Hz), fewer are larger steps.\n\
-    woc-* and tog-* walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
+    woc-*, tog-* and lean walk at --speed, of which 960 frames are the whole; some of their rows multiply --speed or --size.\n\
     Times are interleaved (A B C A B C ...) after warm-up; errors come from a second, untimed pass over the same frames.";
+
+/// Frames of the warm-up unless told otherwise: pipelines are compiled, and methods have a past.
+const WARMUP: usize = 3;
 
 /// Which scene, path and picture size.
 #[derive(Args, Clone, Debug)]
 pub struct SceneChoice {
-    /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out
-    #[arg(long, value_name = "NAME|FILE", value_delimiter = ',')]
+    /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out. A table takes several,
+    /// separated by commas or by giving --scene again; a file whose name holds commas is taken whole if it is there
+    #[arg(long, value_name = "NAME|FILE")]
     pub scene: Vec<String>,
     /// Objects of a procedural scene, as a multiple of its standard number
     #[arg(long, value_name = "F", default_value_t = 0.25)]
@@ -105,7 +112,8 @@ pub struct SceneChoice {
     /// How finely the meshes of the papers' scenes are divided, 0 to 4: each level has about four times the triangles
     #[arg(long, value_name = "N", default_value_t = SceneOptions::default().detail)]
     pub detail_level: u32,
-    /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, or a recorded .json file
+    /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, a recorded .json file, or cuts:
+    /// each frame somewhere else on the scene's way (its camera's or its walk), so that no frame is like the one before
     #[arg(long, value_name = "NAME|FILE")]
     pub path: Option<String>,
     /// How fast the camera goes: at 1, a frame is 1/960 of the path's way (16 s at 60 Hz)
@@ -125,8 +133,8 @@ pub struct SceneChoice {
 /// Which methods.
 #[derive(Args, Clone, Debug)]
 pub struct MethodChoice {
-    /// Methods, separated by commas, or `all`
-    #[arg(long, value_name = "A,B,C|all", default_value = "all")]
+    /// Methods, separated by commas, or `all`; if left out, the default method between what it is to be compared with
+    #[arg(long, value_name = "A,B,C|all", default_value_t = default_methods())]
     pub method: String,
     /// Sets a method's option; may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
@@ -134,15 +142,27 @@ pub struct MethodChoice {
     /// Leave out what is smaller on the screen than PX pixels, in all methods but none and ref: their option `detail`
     #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub detail: u32,
+    /// Let `auto` use woc too, which may miss objects, while its checked frames (one in 16) miss no more than PERCENT of theirs: sets
+    /// auto.allow-error. Without it `auto` is exact
+    #[arg(long, value_name = "PERCENT", value_parser = PossibleValuesParser::new(ALLOW_ERROR_OPTION.values.split('|')))]
+    pub allow_error: Option<String>,
+    /// Run every stage in every frame, also where it cannot change the result: sets the option `skip` of every method that
+    /// has it to false
+    #[arg(long)]
+    pub no_skip: bool,
 }
 
 impl MethodChoice {
-    /// What is set: `--detail` for every method that has it, then each `--set`.
+    /// What is set: `--detail` and `--no-skip` for every method that has those options, then each `--set`.
     pub fn sets(&self) -> Vec<String> {
-        let has_it = |entry: &&culling::Entry| entry.options.contains(&DETAIL_OPTION);
-        let detailed =
-            METHODS.iter().filter(has_it).map(|entry| format!("{}.{}={}", entry.id, DETAIL_OPTION.name, self.detail));
-        detailed.filter(|_| self.detail > 0).chain(self.set.iter().cloned()).collect()
+        let all = |option: OptionInfo, value: String| {
+            let having = METHODS.iter().filter(move |entry| entry.options.contains(&option));
+            having.map(move |entry| format!("{}.{}={value}", entry.id, option.name))
+        };
+        let detailed = all(DETAIL_OPTION, self.detail.to_string()).filter(|_| self.detail > 0);
+        let skipped = all(SKIP_OPTION, "false".to_owned()).filter(|_| self.no_skip);
+        let allowed = self.allow_error.iter().flat_map(|percent| all(ALLOW_ERROR_OPTION, percent.clone()));
+        detailed.chain(skipped).chain(allowed).chain(self.set.iter().cloned()).collect()
     }
 }
 
@@ -155,9 +175,9 @@ pub struct BenchArgs {
     /// Methods and options.
     #[command(flatten)]
     pub methods: MethodChoice,
-    /// Runs a published table on the scenes (city-block and rooms, unless --scene names some, separated by commas) and
-    /// prints its figures beside ours. The table chooses methods and settings; the path is its paper's, the whole of
-    /// closing-in (eovc-*) or a walk (woc-*, tog-*), unless --path names another
+    /// Runs a table on its scenes (ours that are built after its paper's, unless --scene names some) and prints its figures
+    /// beside the published ones; of `lean`, which is ours, goals beside them. The table chooses methods and settings; the
+    /// path is its paper's, the whole of closing-in (eovc-*) or a walk (woc-*, tog-*, lean), unless --path names another
     #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["method", "detail", "capture", "json"])]
     pub table: Option<String>,
     /// Sweeps of options.
@@ -166,16 +186,17 @@ pub struct BenchArgs {
     /// Device.
     #[command(flatten)]
     pub device: DeviceArgs,
-    /// Frames run before the clock starts
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub warmup: u32,
+    /// Frames run before the clock starts; 3 if left out, and 12 of the table `lean`, in which `auto` tries what there is
+    #[arg(long, value_name = "N")]
+    pub warmup: Option<u32>,
     /// Only times: leave out the truth, the errors and the pictures' measures
     #[arg(long)]
     pub no_metrics: bool,
     /// Captures this frame of each method with RenderDoc
     #[arg(long, value_name = "FRAME")]
     pub capture: Option<usize>,
-    /// Prints each stage: ran or skipped, why, and its time; then the parts of the frame with their share
+    /// Prints each stage: ran or skipped, its time, what skipping it saves a frame, and why it was skipped; then the parts of
+    /// the frame with their share, and what `auto` chose
     #[arg(long)]
     pub explain: bool,
     /// Leaves out report.html, and the pictures that are collected for it
@@ -236,7 +257,7 @@ pub struct ShotArgs {
     #[command(flatten)]
     pub device: DeviceArgs,
     /// The method that draws it
-    #[arg(long, value_name = "METHOD", default_value = "none")]
+    #[arg(long, value_name = "METHOD", default_value = culling::default_method().id)]
     pub method: String,
     /// Sets the method's option, or how depth is warped for a view of that (warp.seeds=8); may be given several times
     #[arg(long, value_name = "METHOD.OPTION=VALUE")]
@@ -278,6 +299,13 @@ pub enum SceneAction {
     },
 }
 
+impl BenchArgs {
+    /// Frames of the warm-up, where a table has so many of its own.
+    pub fn warmup(&self, of_table: Option<usize>) -> usize {
+        self.warmup.map_or(of_table.unwrap_or(WARMUP), |frames| frames as usize)
+    }
+}
+
 impl SceneChoice {
     /// As a session takes it.
     ///
@@ -292,14 +320,27 @@ impl SceneChoice {
     /// # Errors
     /// More than one scene.
     pub fn one_scene(&self) -> Result<&str> {
-        match self.scene.as_slice() {
+        match self.scenes().as_slice() {
             [] => Ok("city-block"),
-            [one] => Ok(one),
+            [one] => Ok(*one),
             all => bail!(
                 "--scene {}: give one scene; only a table of `sightline bench --table` runs several",
                 all.join(",")
             ),
         }
+    }
+
+    /// All that is named: each `--scene` is a file of that name, commas and all, or else a list.
+    pub fn scenes(&self) -> Vec<&str> {
+        let named = |given: &'_ str| Path::new(given).is_file();
+        let mut scenes = Vec::new();
+        for given in &self.scene {
+            match named(given) {
+                true => scenes.push(given.as_str()),
+                false => scenes.extend(given.split(',').map(str::trim).filter(|name| !name.is_empty())),
+            }
+        }
+        scenes
     }
 
     /// As a session of one of the scenes takes it.
@@ -318,10 +359,15 @@ impl SceneChoice {
     }
 }
 
+/// Nothing, the least, the default, and the limit.
+fn default_methods() -> String {
+    format!("none,frustum,{},ref", culling::default_method().id)
+}
+
 fn table_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(TABLES.iter().map(|table| {
-        PossibleValue::new(table.id).help(format!("{}, table {}: {}", table.paper.name, table.number, table.title))
-    }))
+    PossibleValuesParser::new(
+        TABLES.iter().map(|table| PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))),
+    )
 }
 
 fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
@@ -330,49 +376,5 @@ fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
     match parts {
         Some(size) if !size.contains(&0) => Ok(size),
         _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn one_command_takes_one_scene_and_a_table_several() {
-        let bench = |line: &str| match Cli::try_parse_from(line.split(' ')).map(|cli| cli.command) {
-            Ok(Command::Bench(arguments)) => Ok(arguments),
-            other => Err(format!("{other:?}")),
-        };
-        assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), "city-block");
-        let two = bench("sightline bench --scene rooms,boxes --scene city-block --table eovc-2").unwrap();
-        assert_eq!(two.scene.scene, ["rooms", "boxes", "city-block"]);
-        assert!(two.scene.one_scene().unwrap_err().to_string().contains("give one scene"));
-        for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
-            assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
-        }
-    }
-
-    #[test]
-    fn a_level_of_detail_reaches_the_session() {
-        let level = |line: &str| match Cli::parse_from(line.split(' ')).command {
-            Command::Shot(arguments) => arguments.scene.session().unwrap().detail,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(level("sightline shot"), SceneOptions::default().detail);
-        assert_eq!(level("sightline shot --scene powerplant --detail-level 3"), 3);
-    }
-
-    #[test]
-    fn sizes_are_read_or_refused() {
-        assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
-        for bad in ["0x5", "12", "axb", "-1x5", "1x2x3"] {
-            assert!(parse_size(bad).is_err(), "{bad}");
-        }
     }
 }

@@ -191,8 +191,12 @@ pub struct Stage {
     pub share: f64,
     /// Frames in which it was skipped.
     pub skipped: u32,
-    /// Why it was skipped, or `null`.
+    /// Why it was skipped, or `null`; where that differs by frame, each reason once, apart by `; `.
     pub reason: Option<String>,
+    /// Milliseconds a frame that skipping it saves, as a mean over all frames: what it takes where it runs (median, the
+    /// warm-up's frames included), for each frame in which it was skipped. `null`: it never ran, so that nobody knows.
+    #[serde(default)]
+    pub saved_ms: Option<f64>,
 }
 
 /// The measures of each frame, in the order of the path. An array is empty if the measure was not taken; otherwise it
@@ -288,6 +292,11 @@ impl Results {
 }
 
 impl Method {
+    /// Was the untimed pass run? Without it nothing is known but times, and every other figure is 0 or `null`.
+    pub fn is_measured(&self) -> bool {
+        !self.frames.drawn.is_empty()
+    }
+
     /// Takes over everything that the comparison with the truth says.
     pub fn set_errors(&mut self, errors: &MethodErrors) {
         self.false_negatives = errors.false_negatives as u64;

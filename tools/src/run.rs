@@ -3,6 +3,7 @@
 use crate::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::session::Session;
 use anyhow::{Context, Result};
+use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::DETAIL_OPTION;
 use culling::{drawn_objects, Drawn, Entry, Guarantee, Method, Options, Setup, View, VisibleSets, Work};
 use engine::{DepthFormat, FrameReport};
@@ -78,8 +79,13 @@ impl Contender {
             Guarantee::Exact if self.options.number(DETAIL_OPTION.name) > 0 => {
                 Guarantee::Approximate("small things are left out")
             }
+            Guarantee::Exact if self.allows_errors() => Guarantee::Approximate(culling::auto::ERRS),
             promised => promised,
         }
+    }
+
+    fn allows_errors(&self) -> bool {
+        self.entry.options.contains(&ALLOW_ERROR_OPTION) && self.options.text(ALLOW_ERROR_OPTION.name) != "0"
     }
 
     /// Runs one frame as it is timed: without the item buffer, and without timers between its stages.

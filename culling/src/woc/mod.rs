@@ -45,7 +45,7 @@ enum Kind {
 /// they hide nothing, and draws all that shows; the one after is tested against the full depth, and so are all others.
 const SETTLED_AFTER: u32 = 3;
 
-struct Woc {
+pub(crate) struct Woc {
     gpu: Gpu,
     kind: Kind,
     recipe: Recipe,
@@ -59,6 +59,13 @@ struct Woc {
     list: DrawList,
     late: DrawList,
     still: Still,
+    /// The last frame's repair has said which of the culled objects the depth of what was drawn does not hide.
+    repaired: bool,
+}
+
+/// Makes `woc-exact`, of which [`Woc::check`] makes `woc` in frames.
+pub(crate) fn make_checked(setup: &Setup<'_>) -> Result<Woc> {
+    Woc::new(setup, Kind::Exact)
 }
 
 /// Makes `woc`.
@@ -85,6 +92,7 @@ impl Method for Woc {
         let map = OcclusionMap::sized(&mut self.map, &self.gpu, world, target.size, self.recipe)?;
         world.update(f);
         f.clear(target);
+        self.repaired = false;
         if self.still.holds(world, view) {
             self.same_again(f, world, view, target);
             return Ok(());
@@ -128,6 +136,7 @@ impl Method for Woc {
             hybrid.draw_shown(f, world, view, target); // 8. and the costly ones whose boxes show
         }
         if self.kind == Kind::Exact {
+            self.repaired = predicted;
             self.repair(f, predicted.then_some(blocks), world, view, target); // 9. and what was culled by mistake
         }
         if let Some(map) = &mut self.map {
@@ -194,7 +203,30 @@ impl Woc {
             list: list("woc.list")?,
             late: list("woc.late")?,
             still: Still::new(setup.options).settled_after(SETTLED_AFTER),
+            repaired: false,
         })
+    }
+
+    /// The next frames repair what was culled by mistake, as `woc-exact` does, or do not, as `woc` does.
+    pub(crate) fn check(&mut self, on: bool) {
+        let kind = if on { Kind::Exact } else { Kind::Conservative };
+        if self.kind != kind {
+            // The lists of the other kind do not hold for this one.
+            self.still.forget();
+            self.kind = kind;
+        }
+    }
+
+    /// Objects that the last frame repaired, in percent of those that its prediction let through: at least as many as it would have missed.
+    /// None if it repaired nothing that was predicted. Call between frames.
+    pub(crate) fn repaired_percent(&self) -> Result<Option<f64>> {
+        if !self.repaired {
+            return Ok(None);
+        }
+        let count =
+            |flags: &Buffer<u32>| Ok::<_, crate::Error>(flags.read()?.iter().filter(|flag| **flag != 0).count());
+        let (repaired, shown) = (count(&self.newly)?, count(&self.visible)?);
+        Ok(Some(100.0 * repaired as f64 / shown.max(1) as f64))
     }
 
     /// What the predicted depth hid, of the blocks in view, is tested once more, against the real depth of what was drawn, and drawn if

@@ -9,7 +9,8 @@ pub const COMPARE_HELP: &str =
     "A is the run before a change, B the one after it. B/A is the ratio of their median frame times.\n\
     Its 95 % interval comes from resampling frames, in pairs. `faster` and `slower` need the whole\n\
     interval on one side of 1, and at least 6 frames. What held during one whole run, such as another\n\
-    load of the machine, is in the ratio, but not in the interval: where that can be, run both again.\n\
+    load of the machine, is in the ratio, but not in the interval: where that can be, run both again, or\n\
+    compare by a method that did not change (--by ref): methods are timed by turns, so that it has the same load.\n\
     Even on a quiet machine, one row in 20 shows a difference that is none.\n\n\
     A gate is a sentence that must not be true: METHOD.FIELD OP NUMBER.\n  \
     METHOD  a label of B, a method's id (all its labels), or any\n  \
@@ -22,7 +23,7 @@ pub const COMPARE_HELP: &str =
     Exit code: 0 no gate failed, 1 a gate failed, 2 an error.\n\n\
     Examples:\n  \
     sightline compare before/results.json after/results.json --stages\n  \
-    sightline compare before/results.json after/results.json --fail-if 'any.ratio_low>1.05'\n  \
+    sightline compare before/results.json after/results.json --by ref --fail-if 'any.ratio_low>1.05'\n  \
     sightline compare out/results.json --fail-if 'eovc.false_negatives>0' --fail-if 'any.ssim_mean<1'";
 
 /// `sightline compare`.
@@ -34,6 +35,10 @@ pub struct CompareArgs {
     /// Fails (exit code 1) if this is true, as in 'eovc.false_negatives>0'; may be given several times
     #[arg(long, value_name = "METHOD.FIELD OP NUMBER")]
     pub fail_if: Vec<Gate>,
+    /// Compares times as multiples of this method's in the same run, such as ref: what slowed a whole run falls out. Gates on
+    /// ratio, ratio_low and ratio_high then are of these
+    #[arg(long, value_name = "LABEL")]
+    pub by: Option<String>,
     /// Also compares each stage
     #[arg(long)]
     pub stages: bool,
@@ -53,8 +58,8 @@ pub struct CompareArgs {
 
 impl CompareArgs {
     /// As the comparison takes them.
-    pub fn options(&self) -> CompareOptions {
+    pub fn options(&self) -> CompareOptions<'_> {
         let bootstrap = Bootstrap { resamples: self.resamples, seed: self.seed };
-        CompareOptions { force: self.force, stages: self.stages, bootstrap }
+        CompareOptions { force: self.force, stages: self.stages, bootstrap, by: self.by.as_deref() }
     }
 }

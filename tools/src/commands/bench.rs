@@ -21,7 +21,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let bar = Bar::new(&session)?;
     let options = BenchOptions {
         methods,
-        warmup: arguments.warmup as usize,
+        warmup: arguments.warmup(None),
         metrics: !arguments.no_metrics,
         pairs: Vec::new(),
         capture,

@@ -59,7 +59,7 @@ fn plan(arguments: &BenchArgs) -> Result<SweepPlan> {
         base,
         baseline,
         settings,
-        warmup: arguments.warmup as usize,
+        warmup: arguments.warmup(None),
         metrics: !arguments.no_metrics,
         command: std::env::args().collect::<Vec<_>>().join(" "),
         folder: arguments.out.join("cells"),

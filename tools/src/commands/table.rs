@@ -1,4 +1,4 @@
-//! `sightline bench --table`: a published table on several scenes.
+//! `sightline bench --table`: a published table, or one of ours, on several scenes.
 
 use super::{bench::Bar, say};
 use crate::bench::{bench, header, write, BenchOptions};
@@ -12,10 +12,7 @@ use anyhow::{bail, Context, Result};
 use culling::warp::Settings;
 use engine::Gpu;
 use std::collections::BTreeMap;
-use std::path::Path;
-
-/// The scenes of a table when none is named.
-const SCENES: [&str; 2] = ["city-block", "rooms"];
+use std::path::{Path, PathBuf};
 
 /// Runs the table's methods on each scene, writes each run's results and the table, and prints it.
 pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
@@ -24,28 +21,39 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
     if arguments.no_metrics && table.needs_truth() {
         bail!("--no-metrics: table {id} shows what is culled or wrong, which needs the truth; leave --no-metrics out");
     }
-    let plan = table.plan(&arguments.methods.set)?;
+    let plan = table.plan(&arguments.methods.sets())?;
     let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
+    let warmup = arguments.warmup(table.warmup());
+    let (mut done, all) = (0, sessions.len() * plan.runs.len());
     for (folder, session) in sessions {
         let mut runs = Vec::new();
         for planned in &plan.runs {
             let mut session = session.clone();
             planned.change.make(&mut session);
-            let ran = run_planned(&gpu, arguments, session, planned)?;
+            done += 1;
+            let ran = run_planned(&gpu, arguments, session, planned, (&format!("run {done} of {all}"), warmup))?;
             let folder = arguments.out.join(&folder);
             save(&ran, &planned.change.folder().map_or(folder.clone(), |below| folder.join(below)))?;
             explain(arguments, &ran.results)?;
             runs.push(ran);
         }
         scenes.push(runs);
+        // After each scene, so that what a long run has come to is there if it is stopped.
+        write_text(table, &plan, &scenes, &arguments.out)?;
     }
-    finish(table, &plan, &scenes, &arguments.out)
+    finish(table, &scenes, &arguments.out, &tables::text(table, &plan, &scenes))
 }
 
-fn run_planned(gpu: &Gpu, arguments: &BenchArgs, session: SessionOptions, planned: &PlannedRun) -> Result<Ran> {
-    let name = session.scene.clone();
+fn run_planned(
+    gpu: &Gpu,
+    arguments: &BenchArgs,
+    session: SessionOptions,
+    planned: &PlannedRun,
+    (place, warmup): (&str, usize),
+) -> Result<Ran> {
+    let name = format!("{place}: {}", session.scene);
     let mut session = Session::on(gpu, session)?;
     let command = std::env::args().collect::<Vec<_>>().join(" ");
     let bar = Bar::new(&session)?;
@@ -66,7 +74,7 @@ fn run_planned(gpu: &Gpu, arguments: &BenchArgs, session: SessionOptions, planne
     } else {
         let options = BenchOptions {
             methods: planned.methods.clone(),
-            warmup: arguments.warmup as usize,
+            warmup,
             metrics: !arguments.no_metrics,
             pairs: planned.pairs.clone(),
             capture: None,
@@ -100,25 +108,31 @@ fn explain(arguments: &BenchArgs, results: &Results) -> Result<()> {
     Ok(())
 }
 
-fn finish(table: &Table, plan: &Plan, scenes: &[Vec<Ran>], out: &Path) -> Result<()> {
+fn write_text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>], out: &Path) -> Result<()> {
     let text = tables::text(table, plan, scenes);
-    let file = out.join(format!("table-{}.txt", table.id));
-    write_atomically(&file, |to| to.write_all(text.as_bytes()))?;
-    say(&text)?;
+    Ok(write_atomically(&text_file(table, out), |to| to.write_all(text.as_bytes()))?)
+}
+
+fn text_file(table: &Table, out: &Path) -> PathBuf {
+    out.join(format!("table-{}.txt", table.id))
+}
+
+fn finish(table: &Table, scenes: &[Vec<Ran>], out: &Path, text: &str) -> Result<()> {
+    say(text)?;
     let files = if scenes.iter().flatten().any(|ran| !ran.warps.is_empty()) {
         "each scene's warps.csv"
     } else {
         "each scene's results.json and results.csv"
     };
-    say(&format!("{}, and {files}, are in {}", file.display(), out.display()))
+    say(&format!("{}, and {files}, are in {}", text_file(table, out).display(), out.display()))
 }
 
 /// Each scene's folder and session.
 fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, SessionOptions)>> {
     let choice = &arguments.scene;
-    let scenes: Vec<&str> = match choice.scene.as_slice() {
-        [] => SCENES.to_vec(),
-        named => named.iter().map(String::as_str).collect(),
+    let scenes = match choice.scenes() {
+        named if named.is_empty() => table.scenes(),
+        named => named,
     };
     let mut sessions: Vec<(String, SessionOptions)> = Vec::new();
     for scene in scenes {
@@ -128,7 +142,7 @@ fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, Session
         }
         let mut session = choice.session_of(scene);
         if session.path.is_none() {
-            let (path, whole) = table.paper.path;
+            let (path, whole) = table.path();
             session.path = Some(path.to_owned());
             session.whole_path |= whole;
         }
@@ -163,7 +177,11 @@ mod tests {
     #[test]
     fn a_table_goes_its_papers_path_unless_told_otherwise() {
         let all = sessions("--table eovc-2").unwrap();
-        assert_eq!(all.iter().map(|(folder, _)| folder.as_str()).collect::<Vec<_>>(), SCENES);
+        let folders =
+            |all: &[(String, SessionOptions)]| all.iter().map(|(folder, _)| folder.clone()).collect::<Vec<_>>();
+        assert_eq!(folders(&all), ["fantasy", "factory", "radial-city", "satellite"]);
+        assert_eq!(folders(&sessions("--table woc-3").unwrap()), ["city-block", "balloons", "powerplant", "monsters"]);
+        assert_eq!(folders(&sessions("--table tog-2").unwrap()), ["monsters"], "of others nothing is published");
         assert!(all.iter().all(|(_, session)| session.path.as_deref() == Some("closing-in") && session.whole_path));
         let warped = sessions("--table woc-1").unwrap();
         assert!(warped.iter().all(|(_, session)| session.path.as_deref() == Some("walk") && !session.whole_path));

@@ -58,6 +58,39 @@ pub struct Ratio {
     pub verdict: Verdict,
 }
 
+/// Times of one run, and those that they are measured by, if any: of another method of the same run, frame by frame. What slows
+/// the whole run is in both, and not in their ratio.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<'a> {
+    /// The times.
+    pub times: &'a [f64],
+    /// What they are measured by.
+    pub by: Option<&'a [f64]>,
+}
+
+impl Side<'_> {
+    /// The median, over the median of what it is measured by. `None` if there are no times, or those are 0.
+    pub fn median(self) -> Option<f64> {
+        let by = self.by.map_or(Some(1.0), stats::median).filter(|ms| *ms > 0.0)?;
+        Some(stats::median(self.times)? / by)
+    }
+
+    /// The same of the frames chosen. What it is measured by is of the same frames, if it has as many.
+    fn median_of(self, chosen: &[usize], random: &mut Random) -> f64 {
+        let times = median_of(self.times, chosen);
+        match self.by {
+            None => times,
+            Some(by) if by.len() == self.times.len() => quotient(times, median_of(by, chosen)),
+            Some(by) => quotient(times, median_of(by, &drawn(by.len(), random))),
+        }
+    }
+}
+
+/// Indices of a resample.
+fn drawn(count: usize, random: &mut Random) -> Vec<usize> {
+    (0..count).map(|_| random.below(count)).collect()
+}
+
 /// Median of `b` over median of `a`, with a percentile bootstrap interval (Efron and Tibshirani 1993, chapter 13). `None` if
 /// a series is empty or the median of `a` is 0.
 ///
@@ -65,21 +98,26 @@ pub struct Ratio {
 /// in both for what it shows is then no noise. Otherwise, or where the lengths differ, each series is resampled apart.
 ///
 /// The admitted limits: frames count as independent of each other, though neighbours on a path resemble one another; and
-/// what holds for a whole run, such as a machine that was busy during B, is in the ratio, but not in the interval.
+/// what holds for a whole run, such as a machine that was busy during B, is in the ratio, but not in the interval
+/// ([`ratio_by`] takes it out).
 pub fn ratio(a: &[f64], b: &[f64], pairs: bool, bootstrap: Bootstrap) -> Option<Ratio> {
-    let ratio = stats::median(b)? / stats::median(a).filter(|ms| *ms > 0.0)?;
-    let pairs = pairs && a.len() == b.len();
+    ratio_by(Side { times: a, by: None }, Side { times: b, by: None }, pairs, bootstrap)
+}
+
+/// The same of two sides that are each measured by something of their own run: a ratio of ratios.
+pub fn ratio_by(a: Side<'_>, b: Side<'_>, pairs: bool, bootstrap: Bootstrap) -> Option<Ratio> {
+    let ratio = b.median()? / a.median().filter(|median| *median > 0.0)?;
+    let pairs = pairs && a.times.len() == b.times.len();
     let mut random = Random::new(bootstrap.seed);
-    let mut chosen = |count: usize| (0..count).map(|_| random.below(count)).collect::<Vec<_>>();
     let resamples = (0..bootstrap.resamples.max(1)).map(|_| {
-        let of_a = chosen(a.len());
-        let median_b = if pairs { median_of(b, &of_a) } else { median_of(b, &chosen(b.len())) };
-        quotient(median_b, median_of(a, &of_a))
+        let of_a = drawn(a.times.len(), &mut random);
+        let of_b = if pairs { of_a.clone() } else { drawn(b.times.len(), &mut random) };
+        quotient(b.median_of(&of_b, &mut random), a.median_of(&of_a, &mut random))
     });
     let resamples: Vec<f64> = resamples.collect();
     let [low, high] = ENDS.map(|percent| stats::percentile(&resamples, percent));
     let (low, high) = (low?, high?);
-    let verdict = match a.len().min(b.len()) {
+    let verdict = match a.times.len().min(b.times.len()) {
         frames if frames < FEWEST_FRAMES => Verdict::NoDifferenceShown,
         _ if high < 1.0 => Verdict::Faster,
         _ if low > 1.0 => Verdict::Slower,
@@ -167,6 +205,30 @@ mod tests {
         assert!(apart.low < 1.0 && apart.verdict == Verdict::NoDifferenceShown, "{apart:?}");
         // Of other lengths there are no pairs, whatever is asked for.
         assert_eq!(of(&a, &b[..39], true), of(&a, &b[..39], false));
+    }
+
+    #[test]
+    fn what_slows_a_whole_run_is_not_in_a_ratio_of_ratios() {
+        // B ran under another load, which grew while it ran: the method and what it is measured by took as much longer.
+        let load: Vec<f64> = (0..40).map(|frame| 1.5 + 0.02 * f64::from(frame)).collect();
+        let loaded = |times: Vec<f64>| times.iter().zip(&load).map(|(ms, load)| ms * load).collect::<Vec<_>>();
+        let (a, ref_a) = (noisy(1, 40, 20.0), noisy(2, 40, 10.0));
+        let (b, ref_b) = (loaded(noisy(3, 40, 20.0)), loaded(noisy(4, 40, 10.0)));
+        let by = |times: &[f64]| {
+            let (a, b) = (Side { times: &a, by: Some(&ref_a) }, Side { times, by: Some(&ref_b) });
+            ratio_by(a, b, true, PLAIN).unwrap()
+        };
+        assert_eq!(of(&a, &b, true).verdict, Verdict::Slower, "that is the load");
+        let same = by(&b);
+        assert!(same.low < 1.0 && 1.0 < same.high && same.verdict == Verdict::NoDifferenceShown, "{same:?}");
+        let twice = by(&b.iter().map(|ms| 2.0 * ms).collect::<Vec<_>>());
+        assert!(twice.low > 1.5 && twice.high < 2.5 && twice.verdict == Verdict::Slower, "{twice:?}");
+        // Of fewer frames, as a stage has them that does not always run, each is drawn apart.
+        let few =
+            ratio_by(Side { times: &a[..9], by: Some(&ref_a) }, Side { times: &b[..9], by: Some(&ref_b) }, true, PLAIN);
+        assert!(few.unwrap().high > few.unwrap().low);
+        let nothing = Side { times: &a, by: Some(&[0.0]) };
+        assert_eq!(ratio_by(nothing, nothing, true, PLAIN), None);
     }
 
     #[test]

@@ -51,18 +51,22 @@ fn options_line(pair: &Pair) -> String {
 }
 
 fn times_table(comparison: &Comparison) -> Vec<String> {
-    let mut grid = Grid::new(vec!["A ms", "B ms", "B/A", "95 % interval", "verdict"], 0);
+    let mut heads = vec!["A ms", "B ms", "B/A", "95 % interval", "verdict"];
+    if comparison.by.is_some() {
+        heads.splice(2..2, ["A by", "B by"]);
+    }
+    let mut grid = Grid::new(heads, 0);
     for pair in &comparison.methods {
-        grid.rows.push((pair.label.clone(), times_cells(&pair.frame)));
+        grid.rows.push((pair.label.clone(), times_cells(&pair.frame, comparison.by.is_some())));
         for stage in &pair.stages {
-            grid.rows.push((format!("  {}", stage.name), times_cells(&stage.times)));
+            grid.rows.push((format!("  {}", stage.name), times_cells(&stage.times, comparison.by.is_some())));
         }
     }
     grid.fill_width();
     grid.lines("method")
 }
 
-fn times_cells(times: &Times) -> Vec<String> {
+fn times_cells(times: &Times, by: bool) -> Vec<String> {
     let ms = |ms: Option<f64>| ms.map_or("-".to_owned(), milliseconds);
     let (ratio, interval, verdict) = match (times.ratio, times.a_ms, times.b_ms) {
         (Some(found), ..) => {
@@ -73,7 +77,10 @@ fn times_cells(times: &Times) -> Vec<String> {
         (None, None, None) => ("-".into(), "-".into(), "ran in neither"),
         (None, Some(_), Some(_)) => ("-".into(), "-".into(), "A took no time"),
     };
-    vec![ms(times.a_ms), ms(times.b_ms), ratio, interval, verdict.to_owned()]
+    let share = |share: Option<f64>| share.map_or("-".to_owned(), number);
+    let shares = [share(times.a_by), share(times.b_by)].into_iter().filter(|_| by);
+    let times = [ms(times.a_ms), ms(times.b_ms)].into_iter().chain(shares);
+    times.chain([ratio, interval, verdict.to_owned()]).collect()
 }
 
 fn number(ratio: f64) -> String {
@@ -88,7 +95,15 @@ fn sureness(comparison: &Comparison, b: &Results) -> Vec<String> {
             "median frame times; 95 % interval: bootstrap over frames, {drawn} ({} resamples, seed {})",
             comparison.bootstrap.resamples, comparison.bootstrap.seed
         ),
-        "what held during the whole of one run, such as another load of the machine, is not in the interval".into(),
+        match &comparison.by {
+            Some(by) => {
+                format!("A by, B by: as multiples of {by} in the same run; B/A is of these, without the load of a whole run")
+            }
+            None => {
+                "what held during the whole of one run, such as another load of the machine, is not in the interval"
+                    .into()
+            }
+        },
     ];
     let frames = b.frames as usize;
     if frames < FEWEST_FRAMES {

@@ -4,8 +4,8 @@ use super::*;
 use crate::results::tests::results;
 use crate::results::Stage;
 
-const PLAIN: CompareOptions =
-    CompareOptions { force: false, stages: true, bootstrap: Bootstrap { resamples: 500, seed: 1 } };
+const PLAIN: CompareOptions<'static> =
+    CompareOptions { force: false, stages: true, bootstrap: Bootstrap { resamples: 500, seed: 1 }, by: None };
 
 /// `none`, `woc[search.seeds=8]` and `ref` over 20 frames that differ from each other, with everything measured.
 fn run() -> Results {
@@ -78,6 +78,32 @@ fn a_run_shows_no_difference_to_itself_and_a_slower_stage_is_found() {
 }
 
 /// A busy machine slows all methods, a change of one method only that one.
+#[test]
+fn by_a_method_that_did_not_change_the_load_of_a_run_falls_out() {
+    let (a, mut b) = (run(), run());
+    // The machine was half as fast, and the method a quarter slower.
+    for (method, times) in b.methods.iter_mut().zip([2.0, 2.5, 2.0]) {
+        method.frames.frame_ms.iter_mut().for_each(|ms| *ms *= times);
+        method.frames.stages.values_mut().flatten().flatten().for_each(|ms| *ms *= times);
+    }
+    let by_ref = compare(&a, &b, CompareOptions { by: Some("ref"), ..PLAIN }).unwrap();
+    let found: Vec<_> = by_ref.methods.iter().map(|pair| pair.frame.ratio.unwrap()).collect();
+    let rounded: Vec<_> = found.iter().map(|ratio| (1e6 * ratio.ratio).round() / 1e6).collect();
+    assert_eq!(rounded, [1.0, 1.25, 1.0]);
+    let verdicts: Vec<_> = found.iter().map(|ratio| ratio.verdict).collect();
+    assert_eq!(verdicts, [Verdict::NoDifferenceShown, Verdict::Slower, Verdict::NoDifferenceShown]);
+    let stage = &by_ref.methods[1].stages[0];
+    assert!((stage.times.ratio.unwrap().ratio - 1.25).abs() < 1e-6, "{stage:?}");
+    let text = text(&by_ref, &b);
+    assert!(text.contains("A by") && text.contains("as multiples of ref in the same run"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 120) && !text.contains("every method is"), "{text}");
+    let plain = compare(&a, &b, PLAIN).unwrap();
+    assert!(plain.methods.iter().all(|pair| pair.frame.ratio.unwrap().verdict == Verdict::Slower));
+    assert!(plain.methods.iter().all(|pair| pair.frame.a_by.is_none()));
+    let error = compare(&a, &b, CompareOptions { by: Some("hzb"), ..PLAIN }).unwrap_err().to_string();
+    assert!(error.contains("--by hzb: A has no method of that label; it has none, woc"), "{error}");
+}
+
 #[test]
 fn where_all_methods_are_slower_the_machine_is_named() {
     let slow = |b: &mut Results, methods: usize| {

@@ -97,7 +97,7 @@ struct Page {
 
 /// Was the untimed pass run? Without it nothing is known but times.
 fn is_measured(results: &Results) -> bool {
-    results.methods.iter().any(|method| !method.frames.drawn.is_empty())
+    results.methods.iter().any(Method::is_measured)
 }
 
 /// The method that ran as `id`, first of its settings.

@@ -93,7 +93,11 @@ impl Method {
         let scalars = scalars.map(|(name, value)| (name.to_string(), value));
         let stages = self.stages.iter().enumerate().flat_map(|(index, stage)| {
             let at = |field: &str| format!("stages[{index}].{field}");
-            [(at("median_ms"), Some(stage.median_ms)), (at("share"), Some(stage.share))]
+            [
+                (at("median_ms"), Some(stage.median_ms)),
+                (at("share"), Some(stage.share)),
+                (at("saved_ms"), stage.saved_ms),
+            ]
         });
         let between = self.psnr_between_db.iter().map(|(label, psnr)| (format!("psnr_between_db.{label}"), *psnr));
         let mut all = scalars.into_iter().chain(stages).chain(between).chain(self.frames.numbers());

@@ -6,7 +6,8 @@ use crate::grid::{clipped, milliseconds, Grid};
 /// A longer label gets a line of its own above its numbers: a shortened one could no longer be told from another.
 const LABEL_WIDTH: usize = 22;
 
-/// One row per method, in the order asked for: times, ratios to `none` and `ref` where those ran, and errors.
+/// One row per method, in the order asked for: times, ratios to `none` and `ref` where those ran, and errors; a dash where
+/// nothing was measured but times (`bench --no-metrics`).
 pub fn table(results: &Results) -> String {
     let columns = columns(results);
     let mut grid = Grid::new(columns.iter().map(|column| column.head).collect(), LABEL_WIDTH);
@@ -25,14 +26,16 @@ pub fn table(results: &Results) -> String {
     lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// One row per stage of a method: did it run, why not, and what it costs. For `--explain`.
+/// One row per stage of a method: did it run, what it costs, what skipping it saves a frame, and why it was skipped. For
+/// `--explain`. A dash stands where that is not known: of a stage that never ran, or was never skipped.
 pub fn stages_table(results: &Results, method: &Method) -> String {
-    let heads = vec!["ran", "ms", "share"];
+    let heads = vec!["ran", "ms", "share", "saved"];
     let mut grid = Grid::new(heads, 34);
     for stage in &method.stages {
         let ms = if stage.skipped >= results.frames { "-".into() } else { milliseconds(stage.median_ms) };
         let share = format!("{:.1} %", 100.0 * stage.share);
-        let cells = vec![ran(stage, results.frames), ms, share];
+        let saved = stage.saved_ms.filter(|_| stage.skipped > 0).map_or("-".into(), milliseconds);
+        let cells = vec![ran(stage, results.frames), ms, share, saved];
         grid.rows.push((stage.name.clone(), cells));
     }
     let mut lines = grid.lines("stage");
@@ -81,13 +84,16 @@ fn columns(results: &Results) -> Vec<Column> {
         }
     }
     add("p95", Box::new(|m| milliseconds(m.frame_ms.p95)));
-    add("drawn", Box::new(|m| quantity(m.drawn_mean)));
-    add("C/R %", Box::new(|m| percent(m.culled_over_ref)));
-    add("false neg.", Box::new(|m| m.false_negatives.to_string()));
-    add("diff px", Box::new(|m| error(m.differing_pixels_mean)));
-    add("PSNR", Box::new(|m| decibels(m.psnr_worst_db)));
-    add("triangles", Box::new(|m| quantity(m.triangles_mean)));
-    add("overdraw", Box::new(|m| overdraw(m.overdraw_mean)));
+    let mut measured = |head, cell: fn(&Method) -> String| {
+        add(head, Box::new(move |m| if m.is_measured() { cell(m) } else { "-".into() }));
+    };
+    measured("drawn", |m| quantity(m.drawn_mean));
+    measured("C/R %", |m| percent(m.culled_over_ref));
+    measured("false neg.", |m| m.false_negatives.to_string());
+    measured("diff px", |m| error(m.differing_pixels_mean));
+    measured("PSNR", |m| decibels(m.psnr_worst_db));
+    measured("triangles", |m| quantity(m.triangles_mean));
+    measured("overdraw", |m| overdraw(m.overdraw_mean));
     columns
 }
 

@@ -15,7 +15,12 @@ fn method(label: &str, id: &str, median: f64) -> Method {
         drawn_mean: 94_000.0,
         triangles_mean: 18.8e6,
         overdraw_mean: Some(3.456),
-        frames: Frames { frame_ms: vec![median; 2], psnr_db: vec![None; 2], ..Frames::default() },
+        frames: Frames {
+            frame_ms: vec![median; 2],
+            drawn: vec![94_000; 2],
+            psnr_db: vec![None; 2],
+            ..Frames::default()
+        },
         ..Method::default()
     }
 }
@@ -43,6 +48,7 @@ pub(crate) fn results() -> Results {
             share: 0.04,
             skipped: 1,
             reason: Some("camera and objects unchanged".into()),
+            saved_ms: Some(0.25),
         },
         Stage {
             name: "warp/draw_rapid".into(),
@@ -50,7 +56,7 @@ pub(crate) fn results() -> Results {
             reason: Some("no rapid objects".into()),
             ..Stage::default()
         },
-        Stage { name: "draw/all".into(), median_ms: 12.0, share: 0.96, ..Stage::default() },
+        Stage { name: "draw/all".into(), median_ms: 12.0, share: 0.96, saved_ms: Some(0.0), ..Stage::default() },
     ];
     Results {
         schema: SCHEMA,
@@ -224,6 +230,31 @@ frame: median ms · C/R: culled / culled by ref · diff px: pixels of other dept
 }
 
 #[test]
+fn what_was_not_measured_is_a_dash_and_an_empty_cell() {
+    let mut results = results();
+    for method in &mut results.methods {
+        method.frames = Frames { frame_ms: method.frames.frame_ms.clone(), ..Frames::default() };
+    }
+    let text = table(&results);
+    let row = text.lines().find(|line| line.starts_with("none")).unwrap();
+    assert_eq!(
+        row.split_whitespace().collect::<Vec<_>>(),
+        ["none", "1000", "1.00", "100.00", "1250", "-", "-", "-", "-", "-", "-", "-"]
+    );
+    let folder = Folder::new("results-unmeasured");
+    let path = folder.0.join("results.csv");
+    results.write_csv(&path).unwrap();
+    let mut csv = csv::Reader::from_path(&path).unwrap();
+    let heads = csv.headers().unwrap().clone();
+    let row = csv.records().next().unwrap().unwrap();
+    let cell = |name: &str| &row[heads.iter().position(|head| head == name).unwrap()];
+    assert_eq!(
+        (cell("frame_ms_median"), cell("drawn_mean"), cell("false_negatives"), cell("ssim_mean")),
+        ("1000", "", "", "")
+    );
+}
+
+#[test]
 fn ratios_are_left_out_without_their_base() {
     let mut results = results();
     results.methods.retain(|method| method.method == "woc");
@@ -257,10 +288,10 @@ fn the_stages_table_gives_every_skip_its_reason() {
     let mut results = results();
     let expected = "\
 woc[search.seeds=8]: approximate: holes are filled from neighbours
-stage                ran     ms   share  why skipped
-warp/search       1 of 2  0.500   4.0 %  camera and objects unchanged
-warp/draw_rapid  skipped      -   0.0 %  no rapid objects
-draw/all             ran  12.00  96.0 %
+stage                ran     ms   share  saved  why skipped
+warp/search       1 of 2  0.500   4.0 %  0.250  camera and objects unchanged
+warp/draw_rapid  skipped      -   0.0 %      -  no rapid objects
+draw/all             ran  12.00  96.0 %      -
 ";
     assert_eq!(stages_table(&results, &results.methods[1]), expected);
     results.methods[1].stages[1].name = "warp/".repeat(10);

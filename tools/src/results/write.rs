@@ -64,6 +64,15 @@ fn optional(value: Option<f64>) -> String {
     value.map_or(String::new(), |v| v.to_string())
 }
 
+/// Empty where nothing was measured but times.
+fn measured(method: &Method, value: impl ToString) -> String {
+    if method.is_measured() {
+        value.to_string()
+    } else {
+        String::new()
+    }
+}
+
 /// `name=value` pairs; strings without quotes.
 fn options(method: &Method) -> String {
     let pairs = method.options.iter().map(|(name, value)| match value {
@@ -92,23 +101,23 @@ const SCALARS: &[(&str, Cell)] = &[
     ("frame_ms_p95", |_, m| m.frame_ms.p95.to_string()),
     ("frame_ms_mean", |_, m| m.frame_ms.mean.to_string()),
     ("host_ms", |_, m| optional(m.host_ms)),
-    ("false_negatives", |_, m| m.false_negatives.to_string()),
-    ("false_negative_frames", |_, m| m.false_negative_frames.to_string()),
-    ("object_error_percent", |_, m| m.object_error_percent.to_string()),
-    ("differing_pixels_mean", |_, m| m.differing_pixels_mean.to_string()),
-    ("tied_pixels_mean", |_, m| m.tied_pixels_mean.to_string()),
+    ("false_negatives", |_, m| measured(m, m.false_negatives)),
+    ("false_negative_frames", |_, m| measured(m, m.false_negative_frames)),
+    ("object_error_percent", |_, m| measured(m, m.object_error_percent)),
+    ("differing_pixels_mean", |_, m| measured(m, m.differing_pixels_mean)),
+    ("tied_pixels_mean", |_, m| measured(m, m.tied_pixels_mean)),
     ("psnr_mean_db", |_, m| optional(m.psnr_mean_db)),
     ("psnr_worst_db", |_, m| optional(m.psnr_worst_db)),
-    ("ssim_mean", |_, m| m.ssim_mean.to_string()),
-    ("drawn_mean", |_, m| m.drawn_mean.to_string()),
-    ("culled_over_total", |_, m| m.culled_over_total.to_string()),
-    ("culled_over_ref", |_, m| m.culled_over_ref.to_string()),
-    ("triangles_mean", |_, m| m.triangles_mean.to_string()),
-    ("draws_mean", |_, m| m.draws_mean.to_string()),
+    ("ssim_mean", |_, m| measured(m, m.ssim_mean)),
+    ("drawn_mean", |_, m| measured(m, m.drawn_mean)),
+    ("culled_over_total", |_, m| measured(m, m.culled_over_total)),
+    ("culled_over_ref", |_, m| measured(m, m.culled_over_ref)),
+    ("triangles_mean", |_, m| measured(m, m.triangles_mean)),
+    ("draws_mean", |_, m| measured(m, m.draws_mean)),
     ("overdraw_mean", |_, m| optional(m.overdraw_mean)),
-    ("queries_mean", |_, m| m.queries_mean.to_string()),
-    ("rays_mean", |_, m| m.rays_mean.to_string()),
-    ("boxes_mean", |_, m| m.boxes_mean.to_string()),
-    ("node_visits_mean", |_, m| m.node_visits_mean.to_string()),
+    ("queries_mean", |_, m| measured(m, m.queries_mean)),
+    ("rays_mean", |_, m| measured(m, m.rays_mean)),
+    ("boxes_mean", |_, m| measured(m, m.boxes_mean)),
+    ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),
     ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
 ];

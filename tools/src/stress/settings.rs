@@ -1,19 +1,25 @@
 //! Settings of methods by chance: each option has many values, and a bug may need two of them at once.
 
 use super::{Random, Subject};
+use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::DETAIL_OPTION;
+use culling::OptionInfo;
 
 /// The same method with every option at a value by chance: one of those listed, or, of a range, one near its ends or the
 /// default. Options of another kind keep theirs.
 pub fn by_chance(subject: &Subject, random: &mut Random) -> Subject {
     let mut subject = subject.clone();
-    // Whoever leaves out details asks for errors.
-    for option in subject.options.known().iter().filter(|option| **option != DETAIL_OPTION) {
+    for option in subject.options.known().iter().filter(|option| !asks_for_errors(option)) {
         let values = choices(option.values, option.default);
         // Values come from the option's own list; one that it refuses all the same leaves the default.
         let _ = subject.options.set(option.name, &values[random.below(values.len())]);
     }
     subject
+}
+
+/// Whoever leaves out details, or allows errors, asks for errors.
+fn asks_for_errors(option: &OptionInfo) -> bool {
+    [DETAIL_OPTION, ALLOW_ERROR_OPTION].contains(option)
 }
 
 /// Values worth trying, at least one.
@@ -46,7 +52,7 @@ mod tests {
                     seen.entry(name).or_default().insert(value);
                 }
             }
-            for option in entry.options.iter().filter(|option| **option != DETAIL_OPTION) {
+            for option in entry.options.iter().filter(|option| !asks_for_errors(option)) {
                 let tried = &seen[option.name];
                 assert!(tried.len() >= 2, "{}.{}: only {tried:?}", entry.id, option.name);
                 let mut fresh = entry.default_options();

@@ -1,7 +1,7 @@
 //! Tables 1 to 5 of "Efficient object visibility culling" (the EOVC thesis), section IV: what it published, and which of our
 //! methods stand in its columns. Its EOVC is our `eovc`; options that the thesis does not have stay at their defaults.
 
-use super::{Column, Measure, Paper, PaperScene, Published, Ratio, Table, Variant, ONE_ROW};
+use super::{Column, Measure, Paper, PaperScene, Published, Ratio, Source, Table, Variant, ONE_ROW};
 
 /// Section IV.1 and table 1.
 const PAPER: Paper = Paper {
@@ -51,8 +51,7 @@ const ACCELERATIONS: &[Column] = &[eovc("NA", NA), eovc("CR", CR), eovc("OF", OF
 pub(super) const TABLE_2: Table = Table {
     id: "eovc-2",
     title: "mean frame time of the culling methods in ms",
-    paper: &PAPER,
-    number: 2,
+    source: Source::Paper(&PAPER, 2),
     columns: &[
         time("NOC", "none"),
         time("VFC", "frustum"),
@@ -72,14 +71,14 @@ pub(super) const TABLE_2: Table = Table {
         Published { scene: "ST", figures: &[66.6, 37.1, 88.1, 14.8, 15.9, 6.7, 11.7, 9.2] },
     ],
     notes: &["OF, CR+OF: eovc with occluder filtering, and with counter read-back as well.", COHERENT],
+    goals: None,
 };
 
 /// Table 3.
 pub(super) const TABLE_3: Table = Table {
     id: "eovc-3",
     title: "mean frame time of eovc's accelerations in ms",
-    paper: &PAPER,
-    number: 3,
+    source: Source::Paper(&PAPER, 3),
     columns: ACCELERATIONS,
     variants: ONE_ROW,
     ratio: Ratio::SpeedUp("NA"),
@@ -90,14 +89,14 @@ pub(super) const TABLE_3: Table = Table {
         Published { scene: "ST", figures: &[14.00, 11.74, 11.66, 9.22] },
     ],
     notes: &["NA: none; CR: counter read-back; OF: occluder filtering.", COHERENT],
+    goals: None,
 };
 
 /// Table 4.
 pub(super) const TABLE_4: Table = Table {
     id: "eovc-4",
     title: "mean frame time of eovc by how its hierarchy is split, in ms",
-    paper: &PAPER,
-    number: 4,
+    source: Source::Paper(&PAPER, 4),
     columns: ACCELERATIONS,
     variants: &[
         Variant::set("SAH", &[("bvh", "sah")]),
@@ -115,14 +114,14 @@ pub(super) const TABLE_4: Table = Table {
         },
     ],
     notes: &["SAH, MID, EQ: surface area heuristic, middle of the longest axis, equal counts.", COHERENT],
+    goals: None,
 };
 
 /// Table 5.
 pub(super) const TABLE_5: Table = Table {
     id: "eovc-5",
     title: "culling efficiency: C/N and C/R (culled over all objects, and over those that REF culls)",
-    paper: &PAPER,
-    number: 5,
+    source: Source::Paper(&PAPER, 5),
     columns: &[
         shares("VFC", "frustum"),
         shares("CHC++", "chc++"),
@@ -153,4 +152,5 @@ pub(super) const TABLE_5: Table = Table {
         },
     ],
     notes: &["CR, OF: counter read-back, occluder filtering.", COHERENT],
+    goals: None,
 };

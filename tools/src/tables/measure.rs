@@ -12,6 +12,10 @@ use shaders::Stage;
 pub enum Measure {
     /// Mean frame time in milliseconds.
     FrameMs,
+    /// Median frame time in milliseconds.
+    MedianMs,
+    /// 95th percentile of frame times in milliseconds.
+    P95Ms,
     /// Mean time of some of a frame's stages in milliseconds.
     StagesMs(Stages),
     /// Objects culled over all, C/N.
@@ -74,7 +78,7 @@ impl Stages {
 impl Measure {
     /// True of times, which ratios can be taken of.
     pub(super) fn is_time(self) -> bool {
-        matches!(self, Measure::FrameMs | Measure::StagesMs(_))
+        matches!(self, Measure::FrameMs | Measure::MedianMs | Measure::P95Ms | Measure::StagesMs(_))
     }
 
     /// True if it needs the comparison with the truth.
@@ -90,6 +94,8 @@ impl Measure {
         let method = ran.results.method(&place.label)?;
         match self {
             Measure::FrameMs => Some(method.frame_ms.mean),
+            Measure::MedianMs => Some(method.frame_ms.median),
+            Measure::P95Ms => Some(method.frame_ms.p95),
             Measure::StagesMs(stages) => stages.mean_ms(method),
             Measure::CulledOverTotal => Some(method.culled_over_total),
             Measure::CulledOverRef => Some(method.culled_over_ref),
@@ -127,14 +133,14 @@ impl Measure {
             }
         };
         match self {
-            Measure::FrameMs | Measure::StagesMs(_) => milliseconds(value),
+            _ if self.is_time() => milliseconds(value),
             Measure::CulledOverTotal | Measure::CulledOverRef => cut(3),
             Measure::CulledOverRefPercent => cut(2),
             Measure::ObjectErrorPercent => small(3),
             Measure::DifferingPixels => small(2),
             Measure::PsnrMean | Measure::PsnrWorst | Measure::PsnrBetween => decimal(value, 1),
             Measure::SsimGain => format!("{value:.3}"),
-            Measure::PsnrGain => format!("{value:.2}"),
+            _ => format!("{value:.2}"),
         }
     }
 }

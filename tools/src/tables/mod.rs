@@ -1,9 +1,13 @@
-//! The papers' tables, run on our scenes and printed beside what was published: `sightline bench --table ID`.
+//! The papers' tables, run on our scenes and printed beside what was published, and tables of our own: `sightline bench
+//! --table ID`.
 //!
 //! A table is one entry of [`TABLES`]: which methods with which settings stand in its columns and rows, what is measured,
-//! and the published figures, which are in one module per paper (`tables/eovc.rs`, `tables/woc.rs`, `tables/tog.rs`).
+//! and the published figures, which are in one module per paper (`tables/eovc.rs`, `tables/woc.rs`, `tables/tog.rs`). What is
+//! ours (`tables/lean.rs`) has no published figures, but goals.
 
 mod eovc;
+mod goals;
+mod lean;
 mod measure;
 mod plan;
 mod print;
@@ -12,6 +16,7 @@ mod tests;
 mod tog;
 mod woc;
 
+pub use goals::Goals;
 pub use measure::{Measure, Stages};
 pub use plan::{Chosen, Place, Plan, PlannedRun};
 pub use print::text;
@@ -22,27 +27,43 @@ use crate::session::SessionOptions;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 
-/// A published table and how to run it again.
+/// A table and how to run it.
 #[derive(Debug)]
 pub struct Table {
     /// Its name on the command line.
     pub id: &'static str,
     /// What it shows, in one line.
     pub title: &'static str,
-    /// Where it was published, and on what it was measured.
-    pub paper: &'static Paper,
-    /// Number of the table in the paper.
-    pub number: u32,
+    /// Where it was published; or that it was not.
+    pub source: Source,
     /// Methods from left to right.
     pub columns: &'static [Column],
     /// Settings from top to bottom, within each scene.
     pub variants: &'static [Variant],
-    /// What a cell's first number is compared with, on the line below, if it is a time.
+    /// What a cell's times are compared with, on the line below.
     pub ratio: Ratio,
-    /// The published figures by scene, in the paper's order.
+    /// The published figures by scene, in the paper's order; none of a table of ours.
     pub published: &'static [Published],
     /// What a reader must know, a line each.
     pub notes: &'static [&'static str],
+    /// What is expected of a method, if anything is.
+    pub goals: Option<Goals>,
+}
+
+/// Where a table comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// A paper, and the table's number in it.
+    Paper(&'static Paper, u32),
+    /// Sightline: no paper has it, and nothing is published to stand beside it.
+    Ours {
+        /// Names of the scenes that it is run on.
+        scenes: &'static [&'static str],
+        /// The path where no row names another, and whether a run goes the whole of it.
+        path: (&'static str, bool),
+        /// Frames of the warm-up where the user names no number.
+        warmup: usize,
+    },
 }
 
 /// Where a table was published.
@@ -140,6 +161,8 @@ pub enum Change {
     Size(f64),
     /// The camera goes so many times as fast.
     Speed(f64),
+    /// It goes another path.
+    Path(&'static str),
     /// It needs this, which Sightline does not have: the row stays empty.
     NotYet(&'static str),
 }
@@ -150,6 +173,7 @@ impl Change {
         match self {
             Change::Size(times) => session.size = session.size.map(|side| (f64::from(side) * times).round() as u32),
             Change::Speed(times) => session.speed *= times,
+            Change::Path(name) => session.path = Some(name.to_owned()),
             Change::Nothing | Change::NotYet(_) => {}
         }
     }
@@ -159,6 +183,7 @@ impl Change {
         match self {
             Change::Size(times) => Some(format!("size-{times}x")),
             Change::Speed(times) => Some(format!("speed-{times}x")),
+            Change::Path(name) => Some(format!("path-{name}")),
             Change::Nothing | Change::NotYet(_) => None,
         }
     }
@@ -208,6 +233,7 @@ pub const TABLES: &[&Table] = &[
     &tog::TABLE_5,
     &tog::TABLE_6,
     &tog::TABLE_7,
+    &lean::TABLE,
 ];
 
 /// The table of that name.
@@ -221,6 +247,47 @@ pub fn find(id: &str) -> Result<&'static Table> {
 }
 
 impl Table {
+    /// What it is called: its paper and number, or its id.
+    pub fn name(&self) -> String {
+        match self.source {
+            Source::Paper(paper, number) => format!("{}, table {number}", paper.name),
+            Source::Ours { .. } => format!("Sightline, table {}", self.id),
+        }
+    }
+
+    /// The paper that published it.
+    pub fn paper(&self) -> Option<&'static Paper> {
+        match self.source {
+            Source::Paper(paper, _) => Some(paper),
+            Source::Ours { .. } => None,
+        }
+    }
+
+    /// The scenes it is run on where none is named: ours that stand for those that it was published of.
+    pub fn scenes(&self) -> Vec<&'static str> {
+        let is_published = |scene: &&PaperScene| self.published.iter().any(|row| row.scene == scene.name);
+        match self.source {
+            Source::Paper(paper, _) => paper.scenes.iter().filter(is_published).map(|scene| scene.ours).collect(),
+            Source::Ours { scenes, .. } => scenes.to_vec(),
+        }
+    }
+
+    /// The path where the user names none, and whether a run goes the whole of it.
+    pub fn path(&self) -> (&'static str, bool) {
+        match self.source {
+            Source::Paper(paper, _) => paper.path,
+            Source::Ours { path, .. } => path,
+        }
+    }
+
+    /// Frames of the warm-up where the user names no number, if the table has its own.
+    pub fn warmup(&self) -> Option<usize> {
+        match self.source {
+            Source::Paper(..) => None,
+            Source::Ours { warmup, .. } => Some(warmup),
+        }
+    }
+
     /// True if a cell needs the comparison with the truth.
     pub fn needs_truth(&self) -> bool {
         self.columns.iter().flat_map(|column| column.shows).any(|measure| measure.needs_truth())

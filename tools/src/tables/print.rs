@@ -1,8 +1,10 @@
 //! A table as text: our scenes' rows, each above the paper's row of the same scene or of the nearest, then the paper's others.
+//! A table of ours has none of the paper's, and its goals below.
 
+use super::goals::goals_text;
 use super::measure::decimal;
-use super::{Column, Measure, PaperScene, Place, Plan, Published, Ran, Ratio, Table};
-use crate::grid::Grid;
+use super::{Column, Measure, Paper, PaperScene, Place, Plan, Published, Ran, Ratio, Table};
+use crate::grid::{clipped, Grid};
 use crate::results::Results;
 
 /// The table of some runs: by scene, those of the plan. Fits 120 columns.
@@ -19,15 +21,17 @@ pub fn text(table: &Table, plan: &Plan, scenes: &[Vec<Ran>]) -> String {
         published(table, scene, how, &mut grid);
         shown.push(scene.name);
     }
-    for scene in table.paper.scenes.iter().filter(|scene| !shown.contains(&scene.name)) {
+    let of_paper = table.paper().map_or(&[][..], |paper| paper.scenes);
+    for scene in of_paper.iter().filter(|scene| !shown.contains(&scene.name)) {
         published(table, scene, "", &mut grid);
     }
     grid.fill_width();
     let runs: Vec<&Results> = scenes.iter().flatten().map(|ran| &ran.results).collect();
-    let mut lines = vec![format!("{}, table {}: {}", table.paper.name, table.number, table.title)];
+    let mut lines = vec![format!("{}: {}", table.name(), table.title)];
     lines.extend(run_lines(&runs));
     lines.push(String::new());
     lines.extend(grid.lines("scene"));
+    lines.extend(goals_text(table, plan, scenes));
     lines.push(String::new());
     lines.extend(notes(table, &runs));
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
@@ -56,7 +60,7 @@ impl Block {
             let name = [self.name.as_str(), variant.name].join(" ");
             grid.rows.push((name.trim_end().to_owned(), [objects].into_iter().chain(self.cells(table, row)).collect()));
             let Some(label) = ratio_label(table, index) else { continue };
-            let row = ratios[index * columns..(index + 1) * columns].iter().map(|ratio| two_decimals(*ratio));
+            let row = ratios[index * columns..(index + 1) * columns].iter().cloned();
             grid.rows.push((format!("  {label}"), [String::new()].into_iter().chain(row).collect()));
         }
     }
@@ -87,16 +91,16 @@ fn ratio_label(table: &Table, variant: usize) -> Option<String> {
     }
 }
 
-/// By variant and column: a cell's first number against its base; none of what is no time.
-fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<Option<f64>> {
+/// By variant and column: a cell's times against their bases, each; a dash where there are none.
+fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<String> {
     let (columns, width) = (table.columns.len(), table.numbers_in_row());
     let column_of = |head: &str| table.columns.iter().position(|column| column.head == head);
-    let at = |variant: usize, column: usize| {
-        let is_time = table.columns[column].shows[0].is_time();
-        numbers[variant * width + table.first_number(column)].filter(|_| is_time)
+    let at = |variant: usize, column: usize, number: usize| {
+        let is_time = table.columns[column].shows.get(number)?.is_time();
+        numbers[variant * width + table.first_number(column) + number].filter(|_| is_time)
     };
-    let one = |place: usize| {
-        let (variant, column) = (place / columns, place % columns);
+    let one = |variant: usize, column: usize, number: usize| {
+        let at = |variant, column| at(variant, column, number);
         let (part, base) = match table.ratio {
             Ratio::None => return None,
             Ratio::Over(head) => (at(variant, column), at(variant, column_of(head)?)),
@@ -106,7 +110,17 @@ fn ratios(table: &Table, numbers: &[Option<f64>]) -> Vec<Option<f64>> {
         let ratio = part? / base?;
         ratio.is_finite().then_some(ratio)
     };
-    (0..table.variants.len() * columns).map(one).collect()
+    let cell = |place: usize| {
+        let (variant, column) = (place / columns, place % columns);
+        let times = table.columns[column].shows.iter().enumerate().filter(|(_, measure)| measure.is_time());
+        let ratios: Vec<String> = times.map(|(number, _)| two_decimals(one(variant, column, number))).collect();
+        if ratios.is_empty() {
+            "-".to_owned()
+        } else {
+            ratios.join(" ")
+        }
+    };
+    (0..table.variants.len() * columns).map(cell).collect()
 }
 
 fn numbers(table: &Table, plan: &Plan, runs: &[Ran]) -> Vec<Option<f64>> {
@@ -124,7 +138,8 @@ fn numbers(table: &Table, plan: &Plan, runs: &[Ran]) -> Vec<Option<f64>> {
 /// The paper's row under ours: the same scene by name, otherwise the one with the nearest number of objects.
 fn counterpart(table: &Table, run: &Results) -> Option<(&'static PaperScene, &'static str)> {
     let is_published = |scene: &&PaperScene| table.published.iter().any(|row| row.scene == scene.name);
-    let scenes = || table.paper.scenes.iter().filter(is_published);
+    let paper = table.paper()?;
+    let scenes = || paper.scenes.iter().filter(is_published);
     if let Some(same) = scenes().find(|scene| scene.ours == run.scene.name) {
         return Some((same, " (same)"));
     }
@@ -153,19 +168,30 @@ fn run_lines(runs: &[&Results]) -> Vec<String> {
         if !lines.contains(&device) {
             lines.push(device);
         }
-        let [width, height] = run.size;
-        let (name, path, frames) = (&run.scene.name, &run.path, run.frames);
-        lines.push(format!("{name}: path {path} · {frames} frames of {width}x{height}"));
+        let size = |run: &Results| format!("{} frames of {}x{}", run.frames, run.size[0], run.size[1]);
+        let mut paths: Vec<&str> = Vec::new();
+        for other in runs.iter().filter(|other| (&other.scene.name, size(other)) == (&run.scene.name, size(run))) {
+            if !paths.contains(&other.path.as_str()) {
+                paths.push(&other.path);
+            }
+        }
+        let line = clipped(&format!("{}: path {} · {}", run.scene.name, paths.join(", "), size(run)));
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
     }
     lines
 }
 
 fn notes(table: &Table, runs: &[&Results]) -> Vec<String> {
-    let mut lines = vec![
-        format!("{}: measured on {}.", table.paper.name, table.paper.measured_on),
-        "Compare ratios, not milliseconds. (same): our scene is built after the paper's; (nearest): another scene, whose".to_owned(),
-        "number of objects is the nearest; the rest have no scene of ours in this run.".to_owned(),
-    ];
+    let mut lines = match table.paper() {
+        Some(paper) => vec![
+            format!("{}: measured on {}.", paper.name, paper.measured_on),
+            "Compare ratios, not milliseconds. (same): our scene is built after the paper's; (nearest): another scene, whose".to_owned(),
+            "number of objects is the nearest; the rest have no scene of ours in this run.".to_owned(),
+        ],
+        None => vec!["Ours: no paper has this table, and no figures are published for it. Compare ratios, not milliseconds.".to_owned()],
+    };
     if runs.iter().any(|run| run.device.kind == "cpu") {
         lines.push("Ours ran on a cpu device: its times show that the methods run, and are no results.".to_owned());
     }
@@ -174,15 +200,34 @@ fn notes(table: &Table, runs: &[&Results]) -> Vec<String> {
         lines.push(format!("Empty or left out is what Sightline does not have yet: {}.", missing.join(", ")));
     }
     lines.extend(table.notes.iter().map(|note| (*note).to_owned()));
-    let frames = table.paper.seconds * 60.0;
+    lines.extend(errors_line(runs).filter(|_| table.goals.is_some()));
+    lines.extend(table.paper().map_or(Vec::new(), |paper| hurry(paper, runs)));
+    lines
+}
+
+/// What the methods lost, all together: times of a method that draws less than there is say nothing.
+fn errors_line(runs: &[&Results]) -> Option<String> {
+    let methods = || runs.iter().flat_map(|run| &run.methods);
+    methods().next()?;
+    if methods().any(|method| method.frames.drawn.is_empty()) {
+        return Some("Errors were not measured (--no-metrics).".to_owned());
+    }
+    let lost: u64 = methods().map(|method| method.false_negatives).sum();
+    let pixels: u64 = methods().flat_map(|method| &method.frames.differing_pixels).sum();
+    Some(format!("In all frames of all methods {lost} visible objects were lost, and {pixels} pixels have another depth than the truth."))
+}
+
+/// What a run that hurries along its whole way must say.
+fn hurry(paper: &Paper, runs: &[&Results]) -> Vec<String> {
+    let frames = paper.seconds * 60.0;
     let hurried = runs.iter().filter(|run| run.path.contains(" whole") && f64::from(run.frames) < frames);
-    if let Some(fewest) = hurried.map(|run| run.frames).min() {
-        lines.push(format!(
+    let Some(fewest) = hurried.map(|run| run.frames).min() else { return Vec::new() };
+    vec![
+        format!(
             "The whole way in {fewest} frames is {:.0} times the {} s of the paper (at 60 Hz): that costs what relies on",
             frames / f64::from(fewest),
-            table.paper.seconds
-        ));
-        lines.push(format!("the last frame. --frames {frames} is its speed."));
-    }
-    lines
+            paper.seconds
+        ),
+        format!("the last frame. --frames {frames} is its speed."),
+    ]
 }

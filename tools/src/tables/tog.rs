@@ -1,7 +1,7 @@
 //! Tables 2, 5, 6 and 7 of "Iterative depth warping" (Lee, Kim and Eisemann, ACM TOG 2018), sections 4.2 and 5.3: what they
 //! published, and which of our methods and warps stand in their columns.
 
-use super::{Change, Column, Measure, Paper, PaperScene, Published, Ratio, Stages, Table, Variant, ONE_ROW};
+use super::{Change, Column, Measure, Paper, PaperScene, Published, Ratio, Source, Stages, Table, Variant, ONE_ROW};
 
 /// Section 4.1. The sequences last 7 to 13 seconds; how many objects YR has is not said.
 const PAPER: Paper = Paper {
@@ -10,7 +10,7 @@ const PAPER: Paper = Paper {
     seconds: 10.0,
     path: ("walk", false),
     scenes: &[
-        PaperScene { name: "YR", ours: "yeahright", objects: None },
+        PaperScene { name: "YR", ours: "yeahrights", objects: None },
         PaperScene { name: "MO", ours: "monsters", objects: Some(6_300) },
         PaperScene { name: "BL", ours: "balloons", objects: Some(35_000) },
         PaperScene { name: "CB", ours: "city-block", objects: Some(94_000) },
@@ -47,8 +47,7 @@ const LAYERS: Change = Change::NotYet("warps of several layers");
 pub(super) const TABLE_2: Table = Table {
     id: "tog-2",
     title: "what the tight search bound gains over the bound of all motions: SSIM and PSNR (dB) of warped depth",
-    paper: &PAPER,
-    number: 2,
+    source: Source::Paper(&PAPER, 2),
     columns: &[gain!("1"), gain!("2"), gain!("4"), gain!("8"), gain!("16"), gain!("32")],
     variants: &[
         Variant::set("L=1", &[]),
@@ -71,14 +70,14 @@ pub(super) const TABLE_2: Table = Table {
         "on the grey scale of `shot --view depth`. The bound is of tiles of 4 x 4 texels: --set warp.tile=1 is the paper's.",
         SLOWER,
     ],
+    goals: None,
 };
 
 /// Table 5.
 pub(super) const TABLE_5: Table = Table {
     id: "tog-5",
     title: "mean frame time of the culling methods in ms",
-    paper: &PAPER,
-    number: 5,
+    source: Source::Paper(&PAPER, 5),
     columns: &[
         Column::new("NOCULL", "none", TIME, 1),
         Column::new("VFC", "frustum", TIME, 1),
@@ -96,6 +95,7 @@ pub(super) const TABLE_5: Table = Table {
         Published { scene: "CB", figures: &[38.4, 43.8, 18.3, 6.2, 4.2] },
     ],
     notes: &[ERODED, SLOWER],
+    goals: None,
 };
 
 /// With the motion buffer, as in the paper: table 6 times its making.
@@ -109,8 +109,7 @@ const fn stages(head: &'static str, shows: &'static [Measure]) -> Column {
 pub(super) const TABLE_6: Table = Table {
     id: "tog-6",
     title: "what warping-based culling spends before it draws, mean ms of a frame",
-    paper: &PAPER,
-    number: 6,
+    source: Source::Paper(&PAPER, 6),
     columns: &[
         stages("Motion generation", &[Measure::StagesMs(Stages::Motion)]),
         stages("Depth warping", &[Measure::StagesMs(Stages::Warping)]),
@@ -131,6 +130,7 @@ pub(super) const TABLE_6: Table = Table {
         ERODED,
         SLOWER,
     ],
+    goals: None,
 };
 
 const WOC: Column = Column::new("WOC", "woc", TIME, 1).with(EIGHT_SEEDS);
@@ -142,8 +142,7 @@ const SAME: f64 = f64::INFINITY;
 pub(super) const TABLE_7: Table = Table {
     id: "tog-7",
     title: "WOC and AWOC by the camera's speed: mean frame time in ms, and PSNR between their pictures in dB",
-    paper: &PAPER,
-    number: 7,
+    source: Source::Paper(&PAPER, 7),
     columns: &[
         WOC,
         Column::new("AWOC", "awoc", TIME, 1).with(EIGHT_SEEDS),
@@ -177,4 +176,5 @@ pub(super) const TABLE_7: Table = Table {
         ERODED_BOTH,
         SLOWER,
     ],
+    goals: None,
 };

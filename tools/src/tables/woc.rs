@@ -1,7 +1,7 @@
 //! Tables 1 to 3 of Kim's thesis (2015), "Efficient occlusion culling with depth warping", section V: what it published, and
 //! which of our methods stand in its columns. Its new culling is our `woc`.
 
-use super::{Change, Column, Measure, Paper, PaperScene, Published, Ratio, Table, Variant, ONE_ROW};
+use super::{Change, Column, Measure, Paper, PaperScene, Published, Ratio, Source, Table, Variant, ONE_ROW};
 
 /// Section V. Its sequences last 15 to 20 seconds; how many objects the monsters are, it does not say.
 const PAPER: Paper = Paper {
@@ -12,7 +12,7 @@ const PAPER: Paper = Paper {
     scenes: &[
         PaperScene { name: "CB", ours: "city-block", objects: Some(94_000) },
         PaperScene { name: "BL", ours: "balloons", objects: Some(25_000) },
-        PaperScene { name: "PP", ours: "power-plant", objects: Some(8_868) },
+        PaperScene { name: "PP", ours: "powerplant", objects: Some(8_868) },
         PaperScene { name: "MO", ours: "monsters", objects: None },
     ],
 };
@@ -27,8 +27,7 @@ const LACKS: &str = "New culling: woc, without the thesis' rapid objects, hybrid
 pub(super) const TABLE_1: Table = Table {
     id: "woc-1",
     title: "errors of warping-based culling against ideal culling",
-    paper: &PAPER,
-    number: 1,
+    source: Source::Paper(&PAPER, 1),
     columns: &[
         Column::new("object error %", "woc", &[Measure::ObjectErrorPercent], 3).with(FOUR_SEEDS),
         Column::new("pixel error", "woc", &[Measure::DifferingPixels], 1).with(FOUR_SEEDS),
@@ -50,14 +49,14 @@ pub(super) const TABLE_1: Table = Table {
         LACKS,
         WALK,
     ],
+    goals: None,
 };
 
 /// Table 2; of its four machines the one of the other tables.
 pub(super) const TABLE_2: Table = Table {
     id: "woc-2",
     title: "mean frame time of warping-based culling by the picture's size, in ms",
-    paper: &PAPER,
-    number: 2,
+    source: Source::Paper(&PAPER, 2),
     columns: &[Column::new("New culling", "woc", &[Measure::FrameMs], 1).with(FOUR_SEEDS)],
     variants: &[Variant::run("HD", Change::Size(1.0)), Variant::run("Full-HD", Change::Size(1.5))],
     ratio: Ratio::OverFirstVariant,
@@ -73,6 +72,7 @@ pub(super) const TABLE_2: Table = Table {
         LACKS,
         WALK,
     ],
+    goals: None,
 };
 
 const TIME_AND_CR: &[Measure] = &[Measure::FrameMs, Measure::CulledOverRefPercent];
@@ -85,8 +85,7 @@ const fn time_and_cr(head: &'static str, method: &'static str) -> Column {
 pub(super) const TABLE_3: Table = Table {
     id: "woc-3",
     title: "mean frame time in ms, and culled in % of what REF culls (CR)",
-    paper: &PAPER,
-    number: 3,
+    source: Source::Paper(&PAPER, 3),
     columns: &[
         time_and_cr("No culling", "none"),
         time_and_cr("VFC", "frustum"),
@@ -116,4 +115,5 @@ pub(super) const TABLE_3: Table = Table {
         },
     ],
     notes: &["Ratios are of times.", LACKS, WALK],
+    goals: None,
 };
