@@ -143,10 +143,8 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[Str
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
     let mut sizes = vk::PhysicalDeviceMaintenance4Properties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default()
-        .push_next(&mut driver)
-        .push_next(&mut subgroup)
-        .push_next(&mut sizes);
+    let mut properties =
+        vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut subgroup).push_next(&mut sizes);
     // SAFETY: the device handle comes from this instance; the chain lives through the call.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let core = properties.properties;

@@ -2,7 +2,8 @@
 
 use culling::{View, World};
 use engine::{
-    Buffer, Error, Extra, Format, Frame, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Target, TimerMode,
+    Buffer, Error, Extra, Format, Frame, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Target,
+    TimerMode,
 };
 use harness::worlds::{cube, dust, shot, sized, square, wires, Maker};
 use harness::{gpu, options, worlds, Lab, Random, Subject};
