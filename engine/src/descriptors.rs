@@ -84,16 +84,15 @@ impl Descriptors {
         let mut pool = lock(pool);
         let wanted = Room::of(ops.iter().filter_map(|recorded| stage_of(&recorded.op)));
         if pool.room.holds(&wanted) {
-            // SAFETY: no set is in use, as the submissions before this one were waited for. A null pool holds nothing.
-            return match pool.raw.is_null() {
-                true => Ok(()),
-                false => {
-                    unsafe { device.reset_descriptor_pool(pool.raw, Default::default()) }.named("vkResetDescriptorPool")
-                }
-            };
+            if pool.raw.is_null() {
+                return Ok(());
+            }
+            // SAFETY: no set is in use, as the submissions before this one were waited for.
+            return unsafe { device.reset_descriptor_pool(pool.raw, Default::default()) }
+                .named("vkResetDescriptorPool");
         }
         let made = Pool::new(device, wanted.doubled())?;
-        // SAFETY: as above.
+        // SAFETY: as above. Null is ignored.
         unsafe { device.destroy_descriptor_pool(pool.raw, None) };
         *pool = made;
         Ok(())

@@ -49,7 +49,9 @@ uvec2 pixel_for(uvec2 texel, out float farthest) {
 
 Reprojection reprojection_of(uvec2 pixel) {
     if (DYNAMIC) {
-        uint slot = slots.items[items.items[pixel.y * push.size_px.x + pixel.x]];
+        uint item = items.items[pixel.y * push.size_px.x + pixel.x];
+        // No object owns the background: its number would be read far outside the slots.
+        uint slot = item == ITEM_NONE ? 0u : slots.items[item];
         if (slot != 0u) return reprojections.items[slot - 1u];
     }
     return push.camera;

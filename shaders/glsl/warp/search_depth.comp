@@ -64,7 +64,9 @@ TexelMotion motion_at(vec2 place) {
 float new_depth(uvec2 pixel, float here) {
     mat4 m = push.camera.clip_from_last;
     if (DYNAMIC) {
-        uint slot = slots.items[items.items[pixel.y * push.size_px.x + pixel.x]];
+        uint item = items.items[pixel.y * push.size_px.x + pixel.x];
+        // No object owns the background: its number would be read far outside the slots.
+        uint slot = item == ITEM_NONE ? 0u : slots.items[item];
         if (slot != 0u) m = reprojections.items[slot - 1u].clip_from_last;
     }
     precise vec2 place = (vec2(pixel) + 0.5) * (2.0 / vec2(push.size_px)) - 1.0;

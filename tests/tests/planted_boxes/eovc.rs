@@ -1,6 +1,6 @@
 //! `eovc` with one defect: the thesis' own groups, not coherent, so that rays are cast.
 
-use super::{caught, caught_by, edit, laws, worlds, Case, Make};
+use super::{caught, caught_at_a_size, caught_by, coarse, edit, laws, worlds, Case, Make};
 use culling::boxes::{box_view, BoxList};
 use culling::eovc::Tree;
 use culling::{DrawList, Method, Setup, View, World};
@@ -83,7 +83,9 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
     let mut shrunk = tree.read_nodes()?;
     let mut no_grids = [0, 1, 1, 0].repeat(24);
     no_grids[0] = 1;
-    shrunk.iter_mut().for_each(|node| node.bounds.half_extent = node.bounds.half_extent.map(|half| 0.5 * half));
+    shrunk
+        .iter_mut()
+        .for_each(|node| node.bounds.half_extent = node.bounds.half_extent.map(|half| coarse(gpu, 0.2) * 0.5 * half));
     Ok(Box::new(Broken {
         defect,
         gpu: gpu.clone(),
@@ -348,7 +350,8 @@ fn groups_that_are_too_small_are_noticed() {
 
 #[test]
 fn boxes_of_single_objects_that_are_too_small_are_noticed() {
-    caught([SOUND, |setup| make(setup, Defect::ShrunkSingles)], &worlds::special::creeping().sized([80, 49]));
+    let sizes = [[80, 49], [161, 97], [640, 386]];
+    caught_at_a_size([SOUND, |setup| make(setup, Defect::ShrunkSingles)], &worlds::special::creeping(), sizes);
 }
 
 #[test]

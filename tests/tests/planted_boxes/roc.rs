@@ -1,6 +1,6 @@
 //! `roc` with one defect.
 
-use super::{caught, caught_by, edit, laws, worlds, Make};
+use super::{caught, caught_at_a_size, caught_by, coarse, edit, laws, worlds, Make};
 use culling::boxes::{box_view, BoxList};
 use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Format, Frame, Gpu, Image, Placement, Target};
@@ -49,7 +49,10 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
     for bound in &mut bounds {
         match defect {
             Defect::ShrunkBoxes => bound.half_extent = bound.half_extent.map(|half| 0.5 * half),
-            Defect::NarrowBoxes => bound.flags &= !OBJECT_WIDE_RASTER,
+            Defect::NarrowBoxes if bound.flags & OBJECT_WIDE_RASTER != 0 => {
+                bound.flags &= !OBJECT_WIDE_RASTER;
+                bound.half_extent = bound.half_extent.map(|half| coarse(gpu, 0.05) * half);
+            }
             _ => (),
         }
     }
@@ -184,7 +187,8 @@ fn boxes_that_are_too_small_are_noticed() {
 
 #[test]
 fn boxes_too_narrow_for_lines_and_points_are_noticed() {
-    caught([SOUND, |setup| make(setup, Defect::NarrowBoxes)], &worlds::special::topologies());
+    let sizes = [[161, 97], [320, 193], [640, 386]];
+    caught_at_a_size([SOUND, |setup| make(setup, Defect::NarrowBoxes)], &worlds::special::topologies(), sizes);
 }
 
 #[test]
