@@ -39,6 +39,14 @@ pub const METHODS: &[Entry] = &[
         make: frustum::make,
     },
     Entry {
+        id: "frustum-bvh",
+        title: "hierarchical view-frustum culling, with plane masking and coherence",
+        source: "Zachmann 2008, VFC",
+        guarantee: Guarantee::Exact,
+        options: frustum::bvh::OPTIONS,
+        make: frustum::bvh::make,
+    },
+    Entry {
         id: "hzb",
         title: "two-phase hierarchical-Z culling",
         source: "Haar & Aaltonen 2015; Lee et al. 2018, 5.1",

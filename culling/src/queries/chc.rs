@@ -47,8 +47,7 @@ impl Method for Chc {
         f.clear(target);
         if self.still.holds(world, view) {
             f.skip("queries/test_nodes", Still::REASON);
-            self.on.draw_again(f, world, view, target);
-            return Ok(());
+            return self.on.draw_again(f, world, view, target);
         }
         let Chc { on, walk, window, .. } = self;
         if !walk.nodes.begin(world, view)? {

@@ -93,8 +93,7 @@ impl Method for ChcPlusPlus {
         f.clear(target);
         if self.still.holds(world, view) {
             f.skip("queries/test_nodes", Still::REASON);
-            self.on.draw_again(f, world, view, target);
-            return Ok(());
+            return self.on.draw_again(f, world, view, target);
         }
         self.check_last_answers()?; // 1. leaves that the last frame asked about
         let ChcPlusPlus { on, walk, window, left, .. } = self;

@@ -19,10 +19,10 @@ const MOST_STEPS: usize = 3_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Run {
     Nothing,
-    /// Objects.
-    Draws,
-    /// Objects, each counted by a query.
-    QueriedDraws,
+    /// Objects of one kind of primitive.
+    Draws(Primitives),
+    /// Such objects, each counted by a query.
+    QueriedDraws(Primitives),
     /// Boxes, each counted by a query.
     Boxes,
 }
@@ -112,11 +112,20 @@ impl Asking {
     }
 
     /// Draws what the last frame drew, in the same order.
-    pub(super) fn draw_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) {
+    pub(super) fn draw_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         assert_eq!(self.all.len(), world.len(), "this list was made for another world: make the method again");
         self.tested.clear();
         self.work = Work::default();
-        self.draw_part(f, (world, view), target, 0, None);
+        let mut first = 0;
+        let primitives = |command: &DrawCommand| primitives_of(world, command.first_instance);
+        for run in self.drawn.chunk_by(|one, next| primitives(one) == primitives(next)) {
+            self.draw_part(f, (world, view, target), first..first + run.len(), None);
+            first += run.len();
+            if f.recorded().len() > MOST_STEPS {
+                f.submit_and_wait()?;
+            }
+        }
+        Ok(())
     }
 
     /// What the last frame did.
@@ -129,28 +138,19 @@ impl Asking {
         &self.tested
     }
 
-    /// Draws what was listed from `first` on: a multi-draw for each run of one kind of primitive, so that the order stays.
+    /// Draws some of what was listed, all of one kind of primitive.
     fn draw_part(
         &self,
         f: &mut Frame,
-        (world, view): (&World, &View),
-        target: &Target,
-        first: usize,
+        (world, view, target): (&World, &View, &Target),
+        part: std::ops::Range<usize>,
         first_query: Option<u32>,
     ) {
-        let mut from = first;
-        let primitives = |command: &DrawCommand| primitives_of(world, command.first_instance);
-        for run in self.drawn[first..].chunk_by(|one, next| primitives(one) == primitives(next)) {
-            let part = part_of(&self.commands, from, run.len());
-            let draw = object_draw(world, part, run.len() as u32, primitives(&run[0]));
-            match first_query {
-                None => world.draw_indirect(f, draw, view, target),
-                Some(query) => {
-                    let queried = Queried { queries: &self.queries, first: query + (from - first) as u32 };
-                    world.query_indirect(f, draw, queried, view, target);
-                }
-            }
-            from += run.len();
+        let primitives = primitives_of(world, self.drawn[part.start].first_instance);
+        let draw = object_draw(world, part_of(&self.commands, part.start, part.len()), part.len() as u32, primitives);
+        match first_query {
+            None => world.draw_indirect(f, draw, view, target),
+            Some(first) => world.query_indirect(f, draw, Queried { queries: &self.queries, first }, view, target),
         }
     }
 }
@@ -213,7 +213,7 @@ pub(super) struct Recording<'a> {
 impl Recording<'_> {
     /// Draws an object.
     pub(super) fn draw(&mut self, object: u32) -> Result<()> {
-        self.go_on(Run::Draws)?;
+        self.go_on(Run::Draws(primitives_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         Ok(())
     }
@@ -221,7 +221,7 @@ impl Recording<'_> {
     /// Draws an object and asks how much of it passes the depth test.
     pub(super) fn draw_and_ask(&mut self, object: u32) -> Result<()> {
         self.make_room(0)?;
-        self.go_on(Run::QueriedDraws)?;
+        self.go_on(Run::QueriedDraws(primitives_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         self.on.pending += 1;
         self.on.work.queries += 1;
@@ -297,15 +297,16 @@ impl Recording<'_> {
         let from = self.on.run_from;
         match run {
             Run::Nothing => return,
-            Run::Draws => self.on.draw_part(self.f, (self.world, self.view), self.target, from, None),
-            Run::QueriedDraws => {
-                let query = Some(self.on.run_query);
-                self.on.draw_part(self.f, (self.world, self.view), self.target, from, query);
-            }
+            Run::Draws(_) => self.draw_part(from, None),
+            Run::QueriedDraws(_) => self.draw_part(from, Some(self.on.run_query)),
             Run::Boxes => self.test_boxes(from),
         }
         // Colour and depth are written or not, pipeline and attachments are others: from one run to the next.
         self.on.work.state_changes += 1;
+    }
+
+    fn draw_part(&mut self, from: usize, first_query: Option<u32>) {
+        self.on.draw_part(self.f, (self.world, self.view, self.target), from..self.on.drawn.len(), first_query);
     }
 
     fn test_boxes(&mut self, from: usize) {

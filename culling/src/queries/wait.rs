@@ -91,8 +91,7 @@ impl Method for QueryWait {
         f.clear(target);
         if self.still.holds(world, view) {
             f.skip("queries/test_objects", Still::REASON);
-            self.on.draw_again(f, world, view, target);
-            return Ok(());
+            return self.on.draw_again(f, world, view, target);
         }
         let sorted = self.bounds.near_to_far(world, view); // 1. objects in view, near to far
         let mut frame = self.on.begin(f, (world, view), target, None)?;

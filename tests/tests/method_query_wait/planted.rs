@@ -35,6 +35,7 @@ struct Broken {
     queries: OcclusionQueries,
     flags: [Buffer<u32>; 2],
     lists: [DrawList; 2],
+    /// By object: the last answer.
     last: Vec<u64>,
 }
 
@@ -56,7 +57,7 @@ fn broken(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>>
         queries: OcclusionQueries::new(gpu, "broken.queries", world.len() as u32)?,
         flags: [flags("broken.first")?, flags("broken.rest")?],
         lists: [DrawList::new(gpu, "broken.early", world)?, DrawList::new(gpu, "broken.late", world)?],
-        last: Vec::new(),
+        last: vec![1; world.len()],
     }))
 }
 
@@ -103,11 +104,10 @@ impl Method for Broken {
         if self.defect == Defect::AnswersShifted && !samples.is_empty() {
             samples.rotate_right(1);
         }
-        let now = samples.clone();
-        if self.defect == Defect::StaleAnswers && self.last.len() == samples.len() {
-            samples.clone_from(&self.last);
+        for (object, samples) in asked.iter().zip(&mut samples) {
+            let before = std::mem::replace(&mut self.last[*object as usize], *samples);
+            *samples = if self.defect == Defect::StaleAnswers { before } else { *samples };
         }
-        self.last = now;
         let mut late: Vec<u32> =
             first.iter().zip(&placed).map(|(first, place)| u32::from(*first == 0 && *place == SELECT_SHOWN)).collect();
         asked.iter().zip(&samples).for_each(|(object, samples)| late[*object as usize] = u32::from(*samples > 0));
@@ -134,7 +134,7 @@ macro_rules! caught {
 }
 
 caught!(shifted_answers_are_caught, AnswersShifted, worlds::walled(100));
-caught!(stale_answers_are_caught, StaleAnswers, worlds::special::all_on_the_near_plane());
+caught!(stale_answers_are_caught, StaleAnswers, worlds::walled(150));
 caught!(shrunk_boxes_are_caught, ShrunkBoxes, worlds::walled(100));
-caught!(boxes_asked_at_the_near_plane_are_caught, NearCrossingAsked, worlds::special::all_on_the_near_plane());
+caught!(boxes_asked_at_the_near_plane_are_caught, NearCrossingAsked, worlds::special::stepping_into_boxes());
 caught!(a_query_that_is_not_asked_is_caught, LastNotAsked, worlds::walled(101));
