@@ -13,11 +13,11 @@ fn what_a_wall_hides_is_culled() {
 fn every_setting_is_exact() {
     let gpu = gpu();
     let settings: [&[(&str, &str)]; 5] = [
-        &[("n-av", "1"), ("b", "1")],
-        &[("d-max", "0"), ("multi", "false")],
-        &[("d-max", "6"), ("s-max", "1000")],
+        &[("n_av", "1"), ("b", "1")],
+        &[("d_max", "0"), ("multi", "false")],
+        &[("d_max", "6"), ("s_max", "10")],
         &[("window", "1"), ("b", "3")],
-        &[("n-av", "1000"), ("b", "1000"), ("window", "16384")],
+        &[("n_av", "1000"), ("b", "1000"), ("window", "16384")],
     ];
     for setting in settings {
         let subject =

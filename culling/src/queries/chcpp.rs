@@ -2,10 +2,10 @@
 //!
 //! - Nodes that were hidden wait in the *i-queue* until there are `b`, and are then asked about in one run, those that have long
 //!   been hidden together ([`super::multi`]).
-//! - Leaves that were visible are taken for visible for `n-av` frames, the first of which are cut short by chance so that not all
+//! - Leaves that were visible are taken for visible for `n_av` frames, the first of which are cut short by chance so that not all
 //!   come due at once; then they wait in the *v-queue*. The paper asks about them while it waits for answers. Here waiting ends
 //!   with a submission, which they would only make longer: they are asked about at the end of the frame, and answered in the next.
-//! - A node is asked about by the boxes of the nodes below it, as far as those have at most `s-max` times its surface.
+//! - A node is asked about by the boxes of the nodes below it, as far as those have at most `s_max` times its surface.
 
 use super::hierarchy::{Hierarchy, Place};
 use super::multi;
@@ -25,7 +25,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     WINDOW_OPTION,
     BVH_OPTION,
     OptionInfo {
-        name: "n-av",
+        name: "n_av",
         default: "10",
         values: "1..=1000",
         help: "frames for which a visible leaf is taken for visible without a query",
@@ -37,16 +37,16 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "hidden nodes that wait to be queried in one run",
     },
     OptionInfo {
-        name: "d-max",
+        name: "d_max",
         default: "3",
         values: "0..=6",
         help: "tight bounds: levels below a node whose boxes may stand for its own; 0 asks about its own",
     },
     OptionInfo {
-        name: "s-max",
-        default: "140",
-        values: "100..=1000",
-        help: "tight bounds: their surface at most, in percent of the node's (the paper's 1.4 is 140)",
+        name: "s_max",
+        default: "1.4",
+        values: "1|1.2|1.4|1.6|2|3|10",
+        help: "tight bounds: their surface at most, as a multiple of the node's",
     },
     OptionInfo {
         name: "multi",
@@ -76,9 +76,9 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
             v_queue: Vec::new(),
             waiting: Vec::new(),
             batch: options.number("b") as usize,
-            assumed_frames: u64::from(options.number("n-av")),
-            levels: options.number("d-max"),
-            surface: f64::from(options.number("s-max")) / 100.0,
+            assumed_frames: u64::from(options.number("n_av")),
+            levels: options.number("d_max"),
+            surface: options.text("s_max").parse().unwrap_or(1.0),
             multiqueries: options.flag("multi"),
         },
         left: Vec::new(),

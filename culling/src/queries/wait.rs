@@ -16,7 +16,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     MIN_PIXELS_OPTION,
     OptionInfo {
         name: "batch",
-        default: "256",
+        default: "64",
         values: "1..=16384",
         help: "boxes queried before the host waits for the answers",
     },
