@@ -59,9 +59,9 @@ pub fn skipping_changes_no_pixel(gpu: &Gpu, subject: &Subject, case: &Case) -> V
     faults
 }
 
-/// Methods that test more finely where earlier frames saw something, ask again only now and then, or filter occluders every few frames: how many frames
+/// Methods that test more finely where earlier frames saw something, and filter occluders every few frames: how many frames
 /// ran decides which hidden objects they draw, never what is seen. The law is about pictures.
-const LEARNING: [&str; 3] = ["eovc", "chc", "nohc"];
+const LEARNING: [&str; 1] = ["eovc"];
 
 fn shot_changed(shots: &[scenes::Shot], frame: usize) -> bool {
     frame == 0 || shots[frame - 1] != shots[frame]

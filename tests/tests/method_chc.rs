@@ -1,7 +1,6 @@
 //! The laws of `chc`.
 
 harness::exact_method_tests!("chc");
-harness::skipping_method_tests!("chc");
 
 #[test]
 fn what_a_wall_hides_is_culled() {
@@ -18,4 +17,13 @@ fn every_window_and_split_is_exact() {
             assert_none(&laws::no_visible_object_is_culled(&gpu, &subject, &case));
         }
     }
+}
+
+#[test]
+#[should_panic(expected = "made for another world")]
+fn a_world_of_another_length_is_refused() {
+    let gpu = gpu();
+    let (long, short) = (worlds::walled(200), worlds::walled(20));
+    let mut method = harness::Lab::new(&gpu, &short).make(&Subject::named("chc"), &Default::default());
+    harness::Lab::new(&gpu, &long).take(&mut *method, &long.shots[0], 0);
 }

