@@ -56,7 +56,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "finest",
-        default: "3",
+        default: "2",
         values: "1..=3",
         help: "finest level of the pyramid: a texel is 2, 4 or 8 pixels a side",
     },
