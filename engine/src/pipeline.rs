@@ -1,12 +1,11 @@
 //! Pipelines, made on first use from what the shader generator wrote down.
 
 use crate::depth::DepthFormat;
-use crate::descriptors::Descriptors;
 use crate::error::Named;
-use crate::features::Extra;
-use crate::gpu::lock;
-use crate::image::Format;
+use crate::features::{Extra, Extras};
+use crate::lock::lock;
 use crate::recorder::Primitives;
+use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
 use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo, VertexFormat};
@@ -43,9 +42,9 @@ type Key = (&'static str, Vec<u32>, Option<DrawState>);
 pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
-    pub(crate) made_any: Mutex<bool>,
-    pub(crate) cache: vk::PipelineCache,
-    pub(crate) cache_file: Option<PathBuf>,
+    made_any: Mutex<bool>,
+    cache: vk::PipelineCache,
+    cache_file: Option<PathBuf>,
     info: AdapterInfo,
 }
 
@@ -61,6 +60,14 @@ impl Pipelines {
             cache_file,
             info: info.clone(),
         })
+    }
+
+    /// Writes the cache to its file, if it has one and anything was made since.
+    pub(crate) fn save(&self, device: &ash::Device) {
+        let Some(path) = &self.cache_file else { return };
+        if std::mem::take(&mut *lock(&self.made_any)) {
+            pipeline_cache::save(device, self.cache, path);
+        }
     }
 
     /// The pipeline of a stage, with the drawing state if it draws.
@@ -102,9 +109,8 @@ impl Pipelines {
                     .stage_flags(flags)
             })
             .collect();
-        let set_info = vk::DescriptorSetLayoutCreateInfo::default()
-            .bindings(&bindings)
-            .flags(Descriptors::layout_flags(self.info.extras));
+        let set_info =
+            vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings).flags(set_flags(self.info.extras));
         // SAFETY: the device is alive; the arrays live through the calls.
         let set =
             unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
@@ -356,5 +362,14 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+    }
+}
+
+/// How layouts of sets are made: for descriptors that are pushed, or that lie in a pool.
+fn set_flags(extras: Extras) -> vk::DescriptorSetLayoutCreateFlags {
+    if extras.has(Extra::PushDescriptor) {
+        vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
+    } else {
+        vk::DescriptorSetLayoutCreateFlags::empty()
     }
 }

@@ -4,7 +4,7 @@ use crate::lab::{error_of, Lab, Subject, Take};
 use crate::{Case, Random};
 use culling::world::Still;
 use engine::Gpu;
-use sightline::metrics::FrameError;
+use sightline::measures::metrics::FrameError;
 
 /// What an exact method may not do in a frame.
 pub fn faults_of(place: &str, error: &FrameError) -> Vec<String> {

@@ -16,7 +16,6 @@ pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};
 
-use crate::pack::DrawList;
 use crate::Result;
 use blocks::Blocks;
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
@@ -216,29 +215,6 @@ impl World {
     /// Notes that blocks need not be tested.
     pub fn skip_blocks(f: &mut Frame, reason: &'static str) {
         f.skip(frustum::TestBlocks::INFO.name, reason);
-    }
-
-    /// Draws what a list holds.
-    pub fn draw(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
-        for draw in list.draws(self) {
-            self.draw_indirect(f, draw, view, target);
-        }
-    }
-
-    /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it.
-    pub fn draw_depth(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
-        for indirect in list.draws(self) {
-            let stage = draw::Depth { view: view.gpu() };
-            f.draw_unshown(stage, indirect, &target.depth_only());
-        }
-    }
-
-    /// Draws what a list holds, and sets the flag of each object of which a fragment passes the early tests: colour, depth
-    /// and visibility in one pass (EOVC thesis III.2).
-    pub fn draw_flagged(&self, f: &mut Frame, list: &DrawList, visible: BufferRef<u32>, view: &View, target: &Target) {
-        for draw in list.draws(self) {
-            self.draw_indirect_flagged(f, draw, visible, view, target);
-        }
     }
 
     /// Draws every object.
