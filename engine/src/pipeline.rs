@@ -43,6 +43,8 @@ pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
     made_any: Mutex<bool>,
+    /// What gathered textures are read with.
+    sampler: vk::Sampler,
     cache: vk::PipelineCache,
     cache_file: Option<PathBuf>,
     info: AdapterInfo,
@@ -52,7 +54,15 @@ impl Pipelines {
     pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>) -> Result<Self> {
         let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
         let cache = pipeline_cache::load(device, cache_file.as_deref())?;
+        // Nearest and clamped to the edge, as filled in; texels are gathered, never filtered.
+        let nearest = vk::SamplerCreateInfo::default()
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        // SAFETY: the device is alive; the info lives through the call.
+        let sampler = unsafe { device.create_sampler(&nearest, None) }.named("vkCreateSampler")?;
         Ok(Pipelines {
+            sampler,
             made: Mutex::default(),
             layouts: Mutex::default(),
             made_any: Mutex::new(false),
@@ -98,15 +108,20 @@ impl Pipelines {
         }
         check_bindings(&self.info, info)?;
         let flags = stage_flags(info);
+        let samplers = [self.sampler];
         let bindings: Vec<_> = info
             .bindings
             .iter()
             .map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
+                let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(binding.binding)
                     .descriptor_type(descriptor_type(binding.kind))
                     .descriptor_count(1)
-                    .stage_flags(flags)
+                    .stage_flags(flags);
+                match binding.kind {
+                    BindingKind::GatheredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
             })
             .collect();
         let set_info =
@@ -191,6 +206,7 @@ impl Pipelines {
                 device.destroy_pipeline_layout(*layout, None);
                 device.destroy_descriptor_set_layout(*set, None);
             }
+            device.destroy_sampler(self.sampler, None);
             device.destroy_pipeline_cache(self.cache, None);
         }
     }
@@ -361,6 +377,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::GatheredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
     }
 }

@@ -137,7 +137,7 @@ impl ComputeStage for MeasureBlocks {}
 /// 2015; depth is reversed, so the farthest is the smallest). Twin: culling/src/hzb/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReduceDepth {
-    /// `depth` in GLSL.
+    /// Gathered: on a CPU device a texture read is a call, and so four depths cost one.
     pub depth: ImageRef,
     /// `levels` in GLSL.
     pub levels: BufferRef<types::PyramidLevel>,
@@ -159,7 +159,7 @@ impl Stage for ReduceDepth {
             spirv: include_bytes!("spirv/hzb/reduce_depth.comp.spv"),
         }],
         bindings: &[
-            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::GatheredImage, access: Access::Read },
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],

@@ -4,6 +4,8 @@ use crate::lab::{error_of, Lab, Subject, Take};
 use crate::{Case, Random};
 use culling::world::Still;
 use engine::Gpu;
+use glam::DVec3;
+use scenes::{Pose, Shot};
 use sightline::measures::metrics::FrameError;
 
 /// What an exact method may not do in a frame.
@@ -253,6 +255,37 @@ pub fn what_a_wall_hides_is_culled(gpu: &Gpu, subject: &Subject, case: &Case) ->
     match hidden {
         [in_view, drawn] if 4 * drawn < in_view => Vec::new(),
         [in_view, drawn] => vec![format!("{place}: {drawn} of {in_view} hidden objects drawn, too many")],
+    }
+}
+
+/// What a camera that sinks behind a wall no longer sees is soon no longer drawn: of the hidden objects that the view volume alone leaves,
+/// less than a quarter are. A method that never forgets what it saw loses nothing, and passes every other law.
+pub fn what_is_no_longer_seen_is_no_longer_drawn(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
+    // From above the wall down to where it hides most, and on for some frames by a hair, so that no frame is as the last.
+    let height = |frame: usize| if frame < 24 { 14.0 - 0.55 * frame as f64 } else { 0.8 - 1e-4 * frame as f64 };
+    let shot = |frame| {
+        let pose = Pose::looking_at(DVec3::new(0.7, height(frame), 7.0), DVec3::ZERO);
+        Shot { pose, ..case.shots[0] }
+    };
+    let case = case.filmed((0..32).map(shot).collect());
+    let mut lab = Lab::new(gpu, &case);
+    let (truths, sets) = lab.truths(&case.shots);
+    let hidden = [&Subject::named("frustum"), subject].map(|subject| {
+        let mut method = lab.make(subject, &sets);
+        let takes = lab.film(&mut *method, &case.shots);
+        let count = |frame: usize| takes[frame].drawn.objects.iter().filter(|drawn| **drawn).count();
+        [0, 31].map(|frame| count(frame).saturating_sub(truths[frame].visible_count()))
+    });
+    let place = format!("{}, {}", subject.options.label(), case.name);
+    let newly_hidden = truths[0].visible_count().saturating_sub(truths[31].visible_count());
+    match hidden {
+        _ if 4 * newly_hidden < case.scene.objects.len() => {
+            vec![format!("{place}: only {newly_hidden} objects become hidden")]
+        }
+        [[_, in_view], [_, drawn]] if 4 * drawn < in_view => Vec::new(),
+        [[_, in_view], [_, drawn]] => {
+            vec![format!("{place}: {drawn} of {in_view} hidden objects still drawn, too many")]
+        }
     }
 }
 

@@ -204,7 +204,8 @@ impl Iterative {
         Ok(())
     }
 
-    /// Camera and objects unchanged: the last frame's lists hold.
+    /// Camera and objects unchanged: the last frame's lists hold. In a single range the first is who owned a pixel in the frame before it,
+    /// so that what the others hold shows nowhere.
     fn same_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         let stages = [
             hzb::MeasureBlocks::INFO,
@@ -218,7 +219,8 @@ impl Iterative {
         ];
         stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
         Pyramid::skip(f, Still::REASON);
-        for number in self.first_step..=self.ranges {
+        let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };
+        for number in self.first_step..=last_step {
             f.part(PARTS[number as usize]);
             let visible = self.visible[self.now].all();
             let step = Step { number, behind: number > self.first_step, seen: visible, visible };
