@@ -17,12 +17,13 @@ mod steps;
 pub mod twin;
 
 use super::Pyramid;
+use crate::eovc::filter_occluders;
 use crate::roc::depth_plane;
 use crate::world::Still;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
-use shaders::types::{FILTER_STRIP, MOST_STEP_RANGES};
+use shaders::types::MOST_STEP_RANGES;
 use shaders::{eovc, hzb, Stage};
 use steps::{Step, Steps};
 
@@ -198,9 +199,7 @@ impl Iterative {
         };
         let owners = target.item.ok_or_else(needs)?;
         f.fill("hzb/clear_visible", seen, 0);
-        let strips = target.size[1].div_ceil(FILTER_STRIP);
-        let filter = eovc::FilterOccluders { owners, occluders: seen.all(), size_px: target.size, strips };
-        f.dispatch(filter, strips * target.size[0]);
+        filter_occluders(f, owners, target.size, seen.all());
         Ok(())
     }
 
