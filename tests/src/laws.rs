@@ -72,8 +72,8 @@ pub fn skipping_changes_no_pixel(gpu: &Gpu, subject: &Subject, case: &Case) -> V
 const LEARNING: [&str; 1] = ["eovc"];
 
 /// Methods that leave out a draw while nothing changes, of objects of which a frame before found that they own no pixel: they may draw
-/// less where they skip, but never anything else.
-const DRAWS_LESS: [&str; 1] = ["hzb-iterative"];
+/// less where they skip, but never anything else. `auto` begins with one.
+const DRAWS_LESS: [&str; 2] = ["hzb-iterative", "auto"];
 
 fn draws_no_more(one: &Take, other: &Take) -> bool {
     one.drawn.objects.iter().zip(&other.drawn.objects).all(|(one, other)| *other || !*one)
