@@ -191,7 +191,7 @@ pub struct BenchArgs {
     /// Only times: leave out the truth, the errors and the pictures' measures
     #[arg(long)]
     pub no_metrics: bool,
-    /// Captures this frame of each method with RenderDoc
+    /// Captures this frame of each method with RenderDoc, to a file a method in --out; times then mean little
     #[arg(long, value_name = "FRAME")]
     pub capture: Option<usize>,
     /// Prints each stage: ran or skipped, its time, what skipping it saves a frame, and why it was skipped; then the parts of
@@ -264,6 +264,10 @@ pub struct ShotArgs {
     /// The frame of the run
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub frame: usize,
+    /// Captures this frame with RenderDoc, to a file beside the picture: that of --frame, or one of the two before it, which run
+    /// so that the method has a past
+    #[arg(long, value_name = "FRAME")]
+    pub capture: Option<usize>,
     /// What to show
     #[arg(long, value_name = "VIEW", default_value = "colour")]
     pub view: Show,
