@@ -65,6 +65,7 @@ pub struct FrameReport {
 pub struct Frame {
     gpu: Gpu,
     recorder: Recorder,
+    title: String,
     report: FrameReport,
     queries: Option<Queries>,
     count_statistics: bool,
@@ -82,6 +83,7 @@ impl Frame {
         Frame {
             gpu: gpu.clone(),
             recorder: Recorder::default(),
+            title: String::new(),
             report: FrameReport::default(),
             queries: None,
             count_statistics: false,
@@ -103,6 +105,11 @@ impl Frame {
     /// Measures the frame alone: no timestamp, and no barrier for its sake, stands between stages. The report then has no stages.
     pub fn without_stage_times(&mut self) {
         self.timer = None;
+    }
+
+    /// Says what the frame is of, such as the method that draws it: a label around its stages in captures.
+    pub fn title(&mut self, title: &str) {
+        self.title = title.to_owned();
     }
 
     /// Names the part of the frame that the following stages belong to ("early", "late"); "" for none.
@@ -267,7 +274,7 @@ impl Frame {
         }
         let queries = match self.queries.take() {
             Some(queries) => queries,
-            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras)?,
+            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras, &vulkan.names)?,
         };
         let result = self.run(vulkan, &queries, &ops);
         self.queries = Some(queries);
@@ -276,6 +283,7 @@ impl Frame {
 
     fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[Recorded]) -> Result<()> {
         let how = lower::How {
+            title: &self.title,
             timer: self.timer,
             statistics: if self.count_statistics { queries.statistics } else { None },
             timestamps: queries.timestamps,

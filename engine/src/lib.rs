@@ -19,6 +19,7 @@ mod lost;
 mod lower;
 mod memory;
 mod messages;
+mod names;
 mod open;
 mod pipeline;
 mod pipeline_cache;
