@@ -37,7 +37,7 @@ pub use capture::Capture;
 pub use depth::DepthFormat;
 pub use error::Error;
 pub use features::{Extra, Feature};
-pub use frame::{Frame, FrameReport, Skip, StageTime, Statistics};
+pub use frame::{Frame, FrameReport, OcclusionQueries, Queried, Skip, StageTime, Statistics};
 pub use gpu::{Gpu, GpuOptions};
 pub use image::Image;
 pub use lower::folded;
