@@ -2,9 +2,9 @@
 
 mod support;
 
-use glam::DVec3;
+use glam::{DVec3, Vec2};
 use scenes::procedural::SCENES;
-use scenes::{open, Aabb, CameraPath, Motion, Scene, SceneError, SceneOptions, WorldBounds};
+use scenes::{open, Aabb, CameraPath, Motion, Scene, SceneError, SceneOptions, Texture, WorldBounds};
 use std::collections::HashSet;
 use support::ItemBuffer;
 
@@ -183,7 +183,7 @@ fn a_third_of_the_moving_boxes_move_and_nothing_else() {
 fn the_hash_sees_every_change_of_a_picture() {
     let base = make("moving-boxes", 0.1, 1);
     type Change = fn(&mut Scene);
-    let changes: [Change; 10] = [
+    let changes: [Change; 16] = [
         |scene| scene.meshes[1].positions[2].x += 1e-6,
         |scene| scene.meshes[1].normals[2] = -scene.meshes[1].normals[2],
         |scene| scene.meshes[1].indices.swap(0, 1),
@@ -191,6 +191,12 @@ fn the_hash_sees_every_change_of_a_picture() {
         |scene| scene.objects[4].mesh = (scene.objects[4].mesh + 1) % 5,
         |scene| scene.objects[4].colour[0] += 1e-6,
         |scene| scene.objects[4].masked = true,
+        |scene| scene.objects[4].surface.cutoff += 1e-6,
+        |scene| scene.objects[4].surface.single_sided = true,
+        |scene| scene.objects[4].surface.texture = Some(0),
+        |scene| scene.meshes[1].texture_coordinates = vec![Vec2::ZERO; scene.meshes[1].positions.len()],
+        |scene| scene.meshes[1].colours = vec![[255; 4]; scene.meshes[1].positions.len()],
+        |scene| scene.textures = vec![Texture { size: [1, 1], texels: vec![[9; 4]], ..Texture::default() }],
         |scene| scene.objects.swap(4, 5),
         |scene| scene.cameras[0].pose.position.x += 1e-9,
         |scene| match &mut scene.motion {

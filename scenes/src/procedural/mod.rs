@@ -22,7 +22,7 @@ mod terrain;
 mod yeahrights;
 
 use crate::camera::{Camera, Pose, Projection};
-use crate::model::{Mesh, Object, Scene, Walk};
+use crate::model::{Mesh, Object, Scene, Surface, Walk};
 use detail::Detail;
 use glam::{DAffine3, DMat3, DVec3};
 use parts::Parts;
@@ -200,6 +200,7 @@ impl Assembly {
             dynamic: false,
             translucent: false,
             masked: false,
+            surface: Surface::default(),
         });
     }
 
