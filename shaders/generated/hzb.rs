@@ -602,7 +602,7 @@ impl Default for TestBoundsConstants {
 /// The boxes of what the last frame did not see and the pyramid does not hide, against the depth of all that was drawn:
 /// to the pixel, where the pyramid knows texels. No colour, no depth is written (hzb-iterative; EOVC thesis II.2, ROC).
 ///
-/// A fragment of a box is open, so what is in the box may show: its command gets an instance.
+/// A fragment of a box is open, so what is in the box may show: its command gets an instance, and it counts as seen.
 #[derive(Clone, Copy, Debug)]
 pub struct TestBoxes {
     /// `bounds` in GLSL.
@@ -615,6 +615,8 @@ pub struct TestBoxes {
     pub views: BufferRef<types::BoxView>,
     /// `drawn` in GLSL.
     pub drawn: BufferRef<types::DrawCommand>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
 }
 
 impl Stage for TestBoxes {
@@ -630,6 +632,7 @@ impl Stage for TestBoxes {
             BindingInfo { name: "shown", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "drawn", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "visible", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 0,
         constants: &[],
@@ -644,7 +647,14 @@ impl Stage for TestBoxes {
     fn bind(&self) -> BoundStage {
         BoundStage::new(
             Self::INFO,
-            vec![self.bounds.into(), self.commands.into(), self.shown.into(), self.views.into(), self.drawn.into()],
+            vec![
+                self.bounds.into(),
+                self.commands.into(),
+                self.shown.into(),
+                self.views.into(),
+                self.drawn.into(),
+                self.visible.into(),
+            ],
             &[],
             vec![],
         )
@@ -775,7 +785,7 @@ impl Default for TestObjectsConstants {
 
 /// One indirect command per object that is drawn in this step, in object order. Those whose boxes decide have no
 /// instance until their box shows, but for meshes so small that a box costs as much. (hzb-iterative; as
-/// pack/write_commands, but of listed blocks alone.) Twin: culling/src/hzb/iterative/twin.rs.
+/// pack/write_commands, but of listed blocks alone.) What is drawn counts as seen until the item buffer says otherwise. Twin: culling/src/hzb/iterative/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct WriteBlocks {
     /// `blocks` in GLSL.
@@ -794,6 +804,8 @@ pub struct WriteBlocks {
     pub meshes: BufferRef<types::MeshRange>,
     /// Of each kind of primitive from its first object's place on.
     pub commands: BufferRef<types::DrawCommand>,
+    /// What this frame sees, by object.
+    pub visible: BufferRef<u32>,
     /// `small_indices` in GLSL.
     pub small_indices: u32,
 }
@@ -814,6 +826,7 @@ impl Stage for WriteBlocks {
             BindingInfo { name: "object_meshes", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "meshes", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "commands", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "visible", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 4,
         constants: &[],
@@ -838,6 +851,7 @@ impl Stage for WriteBlocks {
                 self.object_meshes.into(),
                 self.meshes.into(),
                 self.commands.into(),
+                self.visible.into(),
             ],
             bytemuck::bytes_of(&push),
             vec![],

@@ -5,7 +5,8 @@ use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8; 8] = b"SLVIS001";
+/// The number goes up whenever worlds put objects in another order, as sets are by place in it.
+const MAGIC: &[u8; 8] = b"SLVIS002";
 
 /// The file of a run's visible sets in `folder`. `key` says scene, path, size, frames and device, each in full.
 fn file(folder: &Path, key: &str) -> PathBuf {

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod drawn;
+mod order;
 mod still;
 mod ties;
 pub mod twin;
@@ -36,7 +37,8 @@ pub struct Range {
     pub primitives: Primitives,
 }
 
-/// A scene on the GPU. Objects keep the scene's order, except that triangles come before lines and lines before points.
+/// A scene on the GPU. Triangles come before lines and lines before points, what moves after what stays; beyond that objects keep the
+/// scene's order, unless that puts far from each other what lies near each other: then they lie along a curve through space.
 pub struct World {
     vertices: Buffer<ObjectsVertex>,
     indices: Buffer<u32>,

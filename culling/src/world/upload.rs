@@ -1,5 +1,6 @@
 //! From a scene's data to the GPU's: order, compression, outward rounding.
 
+use super::order::{order, Placed};
 use super::{split, Range};
 use engine::Primitives;
 use glam::{DAffine3, DVec3, Vec3};
@@ -25,9 +26,12 @@ pub(super) struct Flat {
 pub(super) fn flatten(scene: &Scene) -> Flat {
     let (vertices, indices, meshes) = geometry(&scene.meshes);
     let world_bounds = WorldBounds::new(scene);
-    let topology = |object: &u32| scene.meshes[scene.objects[*object as usize].mesh as usize].topology as u32;
-    let mut scene_object: Vec<u32> = (0..scene.objects.len() as u32).collect();
-    scene_object.sort_by_key(topology);
+    let placed = |object: &scenes::Object| Placed {
+        bounds: world_bounds.of(object.mesh, &object.world_from_object),
+        kind: scene.meshes[object.mesh as usize].topology as u32,
+        moves: object.dynamic,
+    };
+    let scene_object = order(&scene.objects.iter().map(placed).collect::<Vec<_>>());
     let (mut objects, mut bounds, mut object_meshes, mut commands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut boxes = Vec::new();
     for (index, scene_index) in scene_object.iter().enumerate() {

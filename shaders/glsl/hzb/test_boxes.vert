@@ -12,12 +12,13 @@ layout(set = 0, binding = 2, scalar) readonly buffer Shown { uint items[]; } sho
 layout(set = 0, binding = 3, scalar) readonly buffer ViewBlock { BoxView items[]; } views;
 
 layout(location = 0) flat out uint command;
+layout(location = 1) flat out uint object;
 
 invariant gl_Position;
 
 void main() {
     command = gl_InstanceIndex;
-    uint object = commands.items[command].first_instance;
+    object = commands.items[command].first_instance;
     if (shown.items[object] == STEP_TESTED) {
         gl_Position = clip_from_grown_corner(bounds.items[object], views.items[0], uint(gl_VertexIndex));
     } else {

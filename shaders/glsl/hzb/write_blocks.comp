@@ -1,6 +1,6 @@
 // hzb/write_blocks: one indirect command per object that is drawn in this step, in object order. Those whose boxes decide have no
 // instance until their box shows, but for meshes so small that a box costs as much. (hzb-iterative; as
-// pack/write_commands, but of listed blocks alone.) Twin: culling/src/hzb/iterative/twin.rs
+// pack/write_commands, but of listed blocks alone.) What is drawn counts as seen until the item buffer says otherwise. Twin: culling/src/hzb/iterative/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
@@ -16,6 +16,8 @@ layout(set = 0, binding = 5, scalar) readonly buffer ObjectMeshes { uint items[]
 layout(set = 0, binding = 6, scalar) readonly buffer Meshes { MeshRange items[]; } meshes;
 // Of each kind of primitive from its first object's place on.
 layout(set = 0, binding = 7, scalar) writeonly buffer Commands { DrawCommand items[]; } commands;
+// What this frame sees, by object.
+layout(set = 0, binding = 8, scalar) writeonly buffer Visible { uint items[]; } visible;
 // small_indices: objects of no more indices are drawn without a test of their box.
 layout(push_constant, scalar) uniform Push { uint small_indices; } push;
 
@@ -40,6 +42,7 @@ void main() {
         MeshRange mesh = meshes.items[object_meshes.items[object]];
         if (mesh.index_count <= push.small_indices) becomes = STEP_SHOWN;
         shown.items[object] = becomes;
+        if (becomes == STEP_SHOWN) visible.items[object] = 1u;
         commands.items[next[kind_of(object, all)]++] = DrawCommand(mesh.index_count, becomes == STEP_SHOWN ? 1u : 0u, mesh.first_index, mesh.vertex_offset, object);
     }
 }

@@ -234,6 +234,8 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
             assert_eq!((found.totals[kind], found.boxes[kind].instance_count), (total, total), "{name}, kind {kind}");
             assert_eq!(found.commands[objects.start..][..expected.len()], expected, "{name}, kind {kind}");
         }
+        let marked = becomes.iter().map(|becomes| u32::from(*becomes == STEP_SHOWN));
+        assert!(found.visible.iter().copied().eq(marked), "{name}: what is drawn for sure counts as seen");
         let drawn = found.totals.iter().any(|total| *total > 0);
         assert_eq!(found.grids, if drawn { [9, 2, 1] } else { [0, 2, 1] }, "{name}");
     }
@@ -246,6 +248,7 @@ const SMALL: u32 = 30;
 
 struct Found {
     shown: Vec<u32>,
+    visible: Vec<u32>,
     starts: Vec<u32>,
     totals: Vec<u32>,
     boxes: Vec<DrawCommand>,
@@ -266,7 +269,8 @@ fn run(
     let (levels, texels) = (stored(gpu, &input.levels), stored(gpu, &input.texels));
     let (seen, object_meshes, meshes) = (stored(gpu, seen), stored(gpu, object_meshes), stored(gpu, meshes));
     let reach = stored(gpu, &[reach.farthest.to_bits(), !reach.nearest.to_bits()]);
-    let (shown, totals, grids) = (words(gpu, BOXES), words(gpu, 3), words(gpu, 3));
+    let (shown, visible) = (words(gpu, BOXES), stored(gpu, &vec![0u32; BOXES]));
+    let (totals, grids) = (words(gpu, 3), words(gpu, 3));
     let (counts, starts) = (stored(gpu, &vec![0u32; 3 * block_count as usize]), words(gpu, 3 * block_count as usize));
     let (boxes, commands) =
         (stored(gpu, &[DrawCommand::default(); 3]), stored(gpu, &vec![DrawCommand::default(); BOXES]));
@@ -309,6 +313,7 @@ fn run(
         object_meshes: object_meshes.all(),
         meshes: meshes.all(),
         commands: commands.all(),
+        visible: visible.all(),
         small_indices: SMALL,
     };
     f.dispatch_indirect(write, list.all().from(LISTED_GRID as usize));
@@ -316,6 +321,7 @@ fn run(
     let read = |buffer: &Buffer<u32>| buffer.read().unwrap();
     Found {
         shown: read(&shown),
+        visible: read(&visible),
         starts: read(&starts),
         totals: read(&totals),
         boxes: boxes.read().unwrap(),

@@ -9,8 +9,8 @@
 //! - r follows from how far the view has changed since the last frame (see [`hurry`]): known before the frame, so nothing is read back.
 //! - Blocks of objects are tested before their objects, and a block once hidden is hidden for the rest of the frame.
 //! - Who counts as seen is found out every few frames from the item buffer, as the EOVC thesis filters occluders (III.6.2): exactly who owns
-//!   a pixel, in any order of drawing. In between, what newly passes the early tests is added. (Flags by fragment alone, in every frame with
-//!   ranges, kept what was drawn before its occluder: 1.7 times the visible objects, and a draw a third slower.)
+//!   a pixel, in any order of drawing. In between, what is newly drawn is added: it passed the tests, so that it would be drawn again.
+//!   (Flags by fragment in every frame kept what was drawn before its occluder, and make a draw a third slower.)
 
 pub mod hurry;
 mod steps;
@@ -147,9 +147,8 @@ impl Method for Iterative {
         if self.afresh {
             f.fill("hzb/clear_seen", before, 0);
         }
-        match filters {
-            true => f.fill("hzb/clear_visible", now, 0),
-            false => f.copy("hzb/keep_visible", before.all(), now.all()),
+        if !filters {
+            f.copy("hzb/keep_visible", before.all(), now.all());
         }
         self.steps.measure(f, world); // 1. where each block of objects lies along the view
         for number in self.first_step..=self.ranges {
@@ -161,11 +160,10 @@ impl Method for Iterative {
                     _ => pyramid.reduce_if(f, target, self.steps.reductions()), // if the last step drew anything
                 }
             }
-            let step = Step { number, behind, seen: before.all() };
+            let step = Step { number, behind, seen: before.all(), visible: now.all() };
             self.steps.find(f, world, pyramid, &step); // 3. what is due and not hidden: seen of this range, unseen of the one before
             self.steps.test_boxes(f, world, &step, target); // 4. of what was not seen, only what shows by its box
-            let adds = (behind && !filters).then_some(now.all());
-            self.steps.draw(f, world, &step, adds, view, target); // 5. draw it, and go on to the next range
+            self.steps.draw(f, world, &step, view, target); // 5. draw it, and go on to the next range
         }
         f.part("");
         self.filter(f, filters.then_some(now), target)?; // 6. every few frames: who owns a pixel
@@ -199,6 +197,7 @@ impl Iterative {
             needs: "the item buffer to find out what is seen; bind it".into(),
         };
         let owners = target.item.ok_or_else(needs)?;
+        f.fill("hzb/clear_visible", seen, 0);
         let strips = target.size[1].div_ceil(FILTER_STRIP);
         let filter = eovc::FilterOccluders { owners, occluders: seen.all(), size_px: target.size, strips };
         f.dispatch(filter, strips * target.size[0]);
@@ -221,8 +220,9 @@ impl Iterative {
         Pyramid::skip(f, Still::REASON);
         for number in self.first_step..=self.ranges {
             f.part(PARTS[number as usize]);
-            let step = Step { number, behind: number > self.first_step, seen: self.visible[self.now].all() };
-            self.steps.draw(f, world, &step, None, view, target);
+            let visible = self.visible[self.now].all();
+            let step = Step { number, behind: number > self.first_step, seen: visible, visible };
+            self.steps.draw(f, world, &step, view, target);
         }
         f.part("");
         Ok(())

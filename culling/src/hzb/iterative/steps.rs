@@ -18,6 +18,8 @@ pub(super) struct Step {
     pub behind: bool,
     /// What the last frame saw, by object.
     pub seen: BufferRef<u32>,
+    /// What this one draws is added here.
+    pub visible: BufferRef<u32>,
 }
 
 /// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
@@ -193,6 +195,7 @@ impl Steps {
             object_meshes: world.object_meshes(),
             meshes: world.meshes(),
             commands: self.commands[number as usize].all(),
+            visible: step.visible,
             small_indices: self.small_indices,
         };
         f.dispatch_indirect(write, blocks.from(LISTED_GRID as usize));
@@ -211,6 +214,7 @@ impl Steps {
             shown: self.shown.all(),
             views: self.shape.view(),
             drawn: commands,
+            visible: step.visible,
         };
         if self.kinds > 0 {
             f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());
@@ -222,23 +226,12 @@ impl Steps {
         self.reductions[1].all()
     }
 
-    /// Draws what a step found; `adds` to what is seen each object of which a fragment passes the early tests.
-    pub fn draw(
-        &self,
-        f: &mut Frame,
-        world: &World,
-        step: &Step,
-        adds: Option<BufferRef<u32>>,
-        view: &View,
-        target: &Target,
-    ) {
+    /// Draws what a step found.
+    pub fn draw(&self, f: &mut Frame, world: &World, step: &Step, view: &View, target: &Target) {
         let target = if step.behind { target.keeping_ties() } else { *target };
         for draw in self.draws(world, step.number) {
             let draw = if step.behind { self.order.turned(draw) } else { draw };
-            match adds {
-                Some(visible) => world.draw_indirect_flagged(f, draw, visible, view, &target),
-                None => world.draw_indirect(f, draw, view, &target),
-            }
+            world.draw_indirect(f, draw, view, &target);
         }
     }
 
