@@ -39,7 +39,7 @@ pub use instance::{adapters, device_lines};
 pub use lower::folded;
 pub use memory::{Buffer, Placement};
 pub use messages::Message;
-pub use recorder::{IndexedIndirect, Op, Primitives, Recorded, Recorder};
+pub use recorder::{Faces, IndexedIndirect, Op, Primitives, Recorded, Recorder, Surface};
 pub use timers::TimerMode;
 pub use window::{Panel, Shown, Window};
 

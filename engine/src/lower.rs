@@ -5,7 +5,7 @@ use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::image::Target;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
-use crate::recorder::{IndexedIndirect, Op, Recorded};
+use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
 use crate::{Error, Result};
@@ -191,9 +191,11 @@ impl Recording<'_> {
                 colour,
                 item: target.item.is_some(),
                 depth: self.vulkan.depth,
-                depth_write: !target.depth_read_only,
+                depth_write: !target.depth_read_only && draw.surface != Surface::Translucent,
                 strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
+                faces: draw.faces,
+                blended: draw.surface == Surface::Translucent,
             }),
         )?;
         let device = &self.vulkan.device;

@@ -7,7 +7,9 @@ use crate::features::Extra;
 use crate::frame::{StageTime, Statistics};
 use crate::gpu::{lock, Gpu, Vulkan};
 use crate::recorder::Recorded;
-use crate::{error::Named, Buffer, Format, Image, IndexedIndirect, Placement, Primitives, Result, Target};
+use crate::{
+    error::Named, Buffer, Faces, Format, Image, IndexedIndirect, Placement, Primitives, Result, Surface, Target,
+};
 use ash::vk;
 use std::fmt;
 use std::sync::Mutex;
@@ -196,6 +198,8 @@ impl Check {
                 count: None,
                 max_draws: 1,
                 primitives: Primitives::Triangles,
+                faces: Faces::Both,
+                surface: Surface::Opaque,
             };
             frame.draw(shaders::engine::SpinPixels {}, draw, &self.target);
         }

@@ -73,6 +73,13 @@ impl Scene {
         Ok(())
     }
 
+    /// True if some object has more than one colour: a texture, or colours at its vertices.
+    pub fn has_textures(&self) -> bool {
+        let coloured =
+            |object: &Object| self.meshes.get(object.mesh as usize).is_some_and(|mesh| !mesh.colours.is_empty());
+        self.objects.iter().any(|object| object.surface.texture.is_some() || coloured(object))
+    }
+
     /// Triangles drawn when every object is: each mesh counts once an object. Lines and points count none.
     pub fn triangles(&self) -> u64 {
         let of_mesh = |mesh: &Mesh| match mesh.topology {

@@ -25,7 +25,11 @@ fn assert_same_objects(written: &Scene, read: &Scene) {
             a.name
         );
         assert_eq!((a.colour, a.dynamic, a.translucent, a.masked), (b.colour, b.dynamic, b.translucent, b.masked));
-        assert_eq!(a.surface, b.surface, "{}", a.name);
+        // Textures come back in the order in which objects use them.
+        let texture = |scene: &Scene, surface: &Surface| surface.texture.map(|at| scene.textures[at as usize].clone());
+        assert!(texture(written, &a.surface) == texture(read, &b.surface), "texture of {}", a.name);
+        let rest = |surface: &Surface| Surface { texture: None, ..*surface };
+        assert_eq!(rest(&a.surface), rest(&b.surface), "{}", a.name);
         assert_same_mesh(&written.meshes[a.mesh as usize], &read.meshes[b.mesh as usize]);
     }
 }
@@ -50,15 +54,15 @@ fn dress(scene: &mut Scene, object: usize) {
     mesh.colours = (0..mesh.positions.len()).map(|vertex| [vertex as u8, 255, 7, 128]).collect();
     scene.meshes.push(mesh);
     let texels = (0..6u8).map(|texel| [texel, 2 * texel, 200, 40 * texel]).collect();
-    let wrap = [Wrap::Mirror, Wrap::Clamp];
+    let (wrap, texture) = ([Wrap::Mirror, Wrap::Clamp], scene.textures.len() as u32);
     scene.textures.push(Texture { name: "checks".into(), size: [3, 2], texels, wrap });
     scene.objects[object].mesh = (scene.meshes.len() - 1) as u32;
-    scene.objects[object].surface = Surface { texture: Some(0), single_sided: true, ..Surface::default() };
+    scene.objects[object].surface = Surface { texture: Some(texture), single_sided: true, ..Surface::default() };
 }
 
 #[test]
 fn scenes_read_back_identical() {
-    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1), ("bad-bounds", 0.1)] {
+    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1), ("bad-bounds", 0.1), ("forest", 0.02)] {
         let mut scene = make(name, scale);
         scene.objects[3].translucent = true;
         scene.objects[3].colour[3] = 0.25;
@@ -67,7 +71,7 @@ fn scenes_read_back_identical() {
         dress(&mut scene, 5);
         let back = read(&export_glb(&scene, None, 0).expect("it can be written"));
         assert_same_objects(&scene, &back);
-        assert!(scene.textures == back.textures, "textures of {name}");
+        assert!(!back.textures.is_empty() && back.textures.len() <= scene.textures.len(), "textures of {name}");
         assert_eq!(back.cameras.len(), 1);
         assert_eq!(back.cameras[0].name, scene.cameras[0].name);
         assert_eq!(back.cameras[0].projection, scene.cameras[0].projection);

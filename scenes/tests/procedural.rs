@@ -53,6 +53,7 @@ fn objects_grow_with_scale() {
     let standards = [
         ("city-block", 94_000.0),
         ("rooms", 4_000.0),
+        ("forest", 12_000.0),
         ("boxes", 402.0),
         ("moving-boxes", 402.0),
         ("bad-bounds", 2_000.0),
@@ -115,6 +116,20 @@ fn the_eye_stands_in_half_of_all_bad_boxes() {
             scene.objects.iter().map(place).collect::<Vec<_>>()
         };
         assert!(drawn(&bad) == drawn(&good), "the two scenes differ in more than their boxes");
+    }
+}
+
+#[test]
+fn most_of_the_forest_is_masked_leaves_and_some_of_it_glass() {
+    let forest = make("forest", 0.5, 1);
+    let share = |chosen: fn(&scenes::Object) -> bool| {
+        forest.objects.iter().filter(|object| chosen(object)).count() as f64 / forest.objects.len() as f64
+    };
+    assert!(share(|object| object.masked && object.surface.texture.is_some()) > 0.5);
+    assert!((0.02..0.2).contains(&share(|object| object.translucent && object.colour[3] < 1.0)));
+    for texture in &forest.textures {
+        let holes = texture.texels.iter().filter(|texel| texel[3] == 0).count() as f64 / texture.texels.len() as f64;
+        assert!((0.2..0.8).contains(&holes), "{}: {holes}", texture.name);
     }
 }
 

@@ -7,6 +7,7 @@ mod city_block;
 mod detail;
 mod factory;
 mod fantasy;
+mod forest;
 mod furniture;
 mod lane;
 mod monsters;
@@ -133,6 +134,13 @@ pub const SCENES: &[Entry] = &[
         about: "satellites among stones of all sizes: 120,000 objects, heavy and mostly in the open",
         by_detail: true,
         make: satellite::make,
+    },
+    Entry {
+        name: "forest",
+        alias: "",
+        about: "trees, bushes and ferns of masked leaves, crystals of glass: 12,000 objects",
+        by_detail: false,
+        make: forest::make,
     },
     Entry {
         name: "rooms",

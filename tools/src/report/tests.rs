@@ -31,7 +31,14 @@ fn gallery() -> Gallery {
 }
 
 fn one_pixel() -> crate::metrics::FrameImages {
-    crate::metrics::FrameImages { width: 1, height: 1, colour: vec![[9; 4]], depth: vec![0.5], items: vec![0] }
+    crate::metrics::FrameImages {
+        width: 1,
+        height: 1,
+        colour: vec![[9; 4]],
+        depth: vec![0.5],
+        items: vec![0],
+        seen_through: vec![],
+    }
 }
 
 /// Parses a report as XML, which is stricter than HTML: every tag closed, every attribute quoted, every letter allowed.

@@ -1,6 +1,7 @@
 //! Small worlds, each hard in one way, with a camera that stands still, moves, turns and jumps.
 
 pub mod chance;
+pub mod materials;
 pub mod special;
 
 pub use chance::chance;
