@@ -3,10 +3,10 @@
 use crate::depth::DepthFormat;
 use crate::features::Extra;
 use crate::gpu::{Gpu, Vulkan};
-use crate::image::{Format, Target};
 use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
+use crate::target::{Format, Target};
 use crate::timers::{self, Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
@@ -267,7 +267,7 @@ impl Frame {
         }
         let queries = match self.queries.take() {
             Some(queries) => queries,
-            None => vulkan.queries.take(vulkan)?,
+            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras)?,
         };
         let result = self.run(vulkan, &queries, &ops);
         self.queries = Some(queries);
@@ -290,13 +290,15 @@ impl Frame {
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
         if let (Some(_), Some(pool)) = (self.timer, queries.timestamps) {
-            self.report.stages.extend(timers::stage_times(vulkan, pool, ops)?);
+            let times = timers::stage_ms(&vulkan.device, &vulkan.info, pool, ops.len())?;
+            let labels = ops.iter().map(|recorded| recorded.label.clone());
+            self.report.stages.extend(labels.zip(times).map(|(label, ms)| StageTime { label, ms }));
         }
         if let Some(pool) = how.statistics {
-            let counted = timers::statistics(vulkan, pool)?;
+            let [primitives, fragments] = timers::statistics(&vulkan.device, pool)?;
             let sum = self.report.statistics.get_or_insert_default();
-            sum.primitives += counted.primitives;
-            sum.fragments += counted.fragments;
+            sum.primitives += primitives;
+            sum.fragments += fragments;
         }
         Ok(())
     }
@@ -341,6 +343,11 @@ impl Drop for Frame {
 }
 
 impl Gpu {
+    /// Starts recording a frame.
+    pub fn frame(&self) -> Frame {
+        Frame::new(self)
+    }
+
     /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
     pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
         match bound {

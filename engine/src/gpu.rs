@@ -6,17 +6,19 @@ use crate::descriptors::Descriptors;
 use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::instance::Instance;
-use crate::memory::{Retired, RetiredList};
+use crate::lock::lock;
 use crate::pipeline::Pipelines;
-use crate::timers::{self, QueryStore, TimerMode};
-use crate::{pipeline_cache, Error, Frame, Message, Result};
+use crate::retired::RetiredList;
+use crate::timers::{QueryStore, TimerMode};
+use crate::{Error, Message, Result};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use gpu_allocator::MemoryLocation;
 use shaders::ResourceId;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +43,7 @@ pub struct GpuOptions {
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
 ///
-/// Frames are recorded and run one at a time: two threads must not be between [`Gpu::frame`] and [`Frame::finish`] at once
+/// Frames are recorded and run one at a time: two threads must not be between [`Gpu::frame`] and [`crate::Frame::finish`] at once
 /// (they share one command pool), nor read or write buffers meanwhile.
 #[derive(Clone)]
 pub struct Gpu(pub(crate) Arc<Inner>);
@@ -70,19 +72,14 @@ pub(crate) struct Vulkan {
     pub(crate) physical: vk::PhysicalDevice,
     pub(crate) family: u32,
     pub(crate) windows: bool,
-    timer: OnceLock<TimerMode>,
+    pub(crate) timer: OnceLock<TimerMode>,
     pub(crate) instance: Instance,
 }
 
-/// A lock that a panic elsewhere does not take away: the data is only ever replaced whole.
-pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
 impl Gpu {
-    /// Opens a device.
-    pub fn open(options: &GpuOptions) -> Result<Self> {
-        let instance = Instance::new(options)?;
+    /// Opens a device whose stages are not timed yet: [`Gpu::open`] decides how.
+    pub(crate) fn open_untimed(options: &GpuOptions) -> Result<Self> {
+        let instance = Instance::new(options.validation, options.windows)?;
         let (physical, info) = adapter::choose(&instance, options.device.as_deref(), &options.without)?;
         adapter::check_depth(&instance, physical, &info, options.depth)?;
         if options.windows {
@@ -94,21 +91,12 @@ impl Gpu {
         })?;
         let device = create_device(&instance.raw, physical, family, info.extras, options.windows)?;
         let vulkan = Vulkan::new(instance, physical, device, family, info, options)?;
-        let gpu = Gpu(Arc::new(Inner {
+        Ok(Gpu(Arc::new(Inner {
             vulkan: Some(vulkan),
             next_id: AtomicU32::new(0),
             names: Mutex::default(),
             barrier_every_stage: options.barrier_every_stage,
-        }));
-        let mode = match options.timer {
-            _ if !gpu.has(Extra::Timestamps) => TimerMode::Off,
-            Some(mode) => mode,
-            None => timers::self_check(&gpu)?,
-        };
-        if let Some(vulkan) = &gpu.0.vulkan {
-            vulkan.timer.get_or_init(|| mode);
-        }
-        Ok(gpu)
+        })))
     }
 
     /// An engine without a device: frames are recorded and can be read as text, but not run.
@@ -157,11 +145,6 @@ impl Gpu {
         bytes as f64 / (1024.0 * 1024.0)
     }
 
-    /// Starts recording a frame.
-    pub fn frame(&self) -> Frame {
-        Frame::new(self)
-    }
-
     /// What the validation layer said since this was last asked.
     pub fn take_messages(&self) -> Vec<Message> {
         self.0.vulkan.as_ref().map(|vulkan| vulkan.instance.messages.take()).unwrap_or_default()
@@ -175,7 +158,7 @@ impl Gpu {
     /// Writes the pipeline cache to disk, if it has a place there. Failing to is no error: it is only a cache.
     pub fn save_pipeline_cache(&self) {
         if let Some(vulkan) = &self.0.vulkan {
-            pipeline_cache::save(&vulkan.device, &vulkan.pipelines);
+            vulkan.pipelines.save(&vulkan.device);
         }
     }
 
@@ -287,13 +270,41 @@ impl Vulkan {
         self.info.extras.has(extra)
     }
 
+    /// Device memory for a resource.
+    pub(crate) fn allocate(
+        &self,
+        name: &str,
+        requirements: vk::MemoryRequirements,
+        location: MemoryLocation,
+        linear: bool,
+    ) -> Result<Allocation> {
+        let description = AllocationCreateDesc {
+            name,
+            requirements,
+            location,
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
+        let allocation = lock(&self.allocator).allocate(&description).map_err(|source| Error::OutOfMemory {
+            what: name.to_owned(),
+            mib: requirements.size as f64 / (1024.0 * 1024.0),
+            source,
+        })?;
+        self.memory_bytes.fetch_add(allocation.size(), Ordering::Relaxed);
+        Ok(allocation)
+    }
+
     /// Frees what was dropped, if no recorded frame can still name it.
     pub(crate) fn bury(&self) {
         if self.frames_alive.load(Ordering::Acquire) == 0 {
-            let retired: Vec<Retired> = self.retired.take();
-            for one in retired {
-                one.free(self);
-            }
+            self.free_retired();
+        }
+    }
+
+    fn free_retired(&self) {
+        for one in self.retired.take() {
+            let bytes = one.free(&self.device, &self.allocator);
+            self.memory_bytes.fetch_sub(bytes, Ordering::Relaxed);
         }
     }
 
@@ -312,10 +323,8 @@ impl Drop for Vulkan {
         unsafe {
             let _ = self.device.device_wait_idle();
         }
-        for one in self.retired.take() {
-            one.free(self);
-        }
-        pipeline_cache::save(&self.device, &self.pipelines);
+        self.free_retired();
+        self.pipelines.save(&self.device);
         self.pipelines.destroy(&self.device);
         self.queries.destroy(&self.device);
         self.descriptors.destroy(&self.device);

@@ -3,9 +3,9 @@
 use crate::barriers::{Barrier, Point};
 use crate::features::Extra;
 use crate::gpu::Vulkan;
-use crate::image::Target;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
+use crate::target::Target;
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
 use crate::{Error, Result};

@@ -1,12 +1,11 @@
 //! Pipelines, made on first use from what the shader generator wrote down.
 
 use crate::depth::DepthFormat;
-use crate::descriptors::Descriptors;
 use crate::error::Named;
-use crate::features::Extra;
-use crate::gpu::lock;
-use crate::image::Format;
+use crate::features::{Extra, Extras};
+use crate::lock::lock;
 use crate::recorder::{Faces, Primitives};
+use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
 use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo, VertexFormat};
@@ -46,9 +45,11 @@ type Key = (&'static str, Vec<u32>, Option<DrawState>);
 pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
-    pub(crate) made_any: Mutex<bool>,
-    pub(crate) cache: vk::PipelineCache,
-    pub(crate) cache_file: Option<PathBuf>,
+    made_any: Mutex<bool>,
+    /// What gathered textures are read with.
+    sampler: vk::Sampler,
+    cache: vk::PipelineCache,
+    cache_file: Option<PathBuf>,
     info: AdapterInfo,
 }
 
@@ -56,7 +57,15 @@ impl Pipelines {
     pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>) -> Result<Self> {
         let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
         let cache = pipeline_cache::load(device, cache_file.as_deref())?;
+        // Nearest and clamped to the edge, as filled in; texels are gathered, never filtered.
+        let nearest = vk::SamplerCreateInfo::default()
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        // SAFETY: the device is alive; the info lives through the call.
+        let sampler = unsafe { device.create_sampler(&nearest, None) }.named("vkCreateSampler")?;
         Ok(Pipelines {
+            sampler,
             made: Mutex::default(),
             layouts: Mutex::default(),
             made_any: Mutex::new(false),
@@ -64,6 +73,14 @@ impl Pipelines {
             cache_file,
             info: info.clone(),
         })
+    }
+
+    /// Writes the cache to its file, if it has one and anything was made since.
+    pub(crate) fn save(&self, device: &ash::Device) {
+        let Some(path) = &self.cache_file else { return };
+        if std::mem::take(&mut *lock(&self.made_any)) {
+            pipeline_cache::save(device, self.cache, path);
+        }
     }
 
     /// The pipeline of a stage, with the drawing state if it draws.
@@ -94,20 +111,24 @@ impl Pipelines {
         }
         check_bindings(&self.info, info)?;
         let flags = stage_flags(info);
+        let samplers = [self.sampler];
         let bindings: Vec<_> = info
             .bindings
             .iter()
             .map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
+                let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(binding.binding)
                     .descriptor_type(descriptor_type(binding.kind))
                     .descriptor_count(1)
-                    .stage_flags(flags)
+                    .stage_flags(flags);
+                match binding.kind {
+                    BindingKind::GatheredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
             })
             .collect();
-        let set_info = vk::DescriptorSetLayoutCreateInfo::default()
-            .bindings(&bindings)
-            .flags(Descriptors::layout_flags(self.info.extras));
+        let set_info =
+            vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings).flags(set_flags(self.info.extras));
         // SAFETY: the device is alive; the arrays live through the calls.
         let set =
             unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
@@ -188,6 +209,7 @@ impl Pipelines {
                 device.destroy_pipeline_layout(*layout, None);
                 device.destroy_descriptor_set_layout(*set, None);
             }
+            device.destroy_sampler(self.sampler, None);
             device.destroy_pipeline_cache(self.cache, None);
         }
     }
@@ -372,6 +394,16 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::GatheredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+    }
+}
+
+/// How layouts of sets are made: for descriptors that are pushed, or that lie in a pool.
+fn set_flags(extras: Extras) -> vk::DescriptorSetLayoutCreateFlags {
+    if extras.has(Extra::PushDescriptor) {
+        vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
+    } else {
+        vk::DescriptorSetLayoutCreateFlags::empty()
     }
 }

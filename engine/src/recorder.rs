@@ -1,7 +1,7 @@
 //! What a frame is before it becomes Vulkan: a list of stages with barriers between them. Plain data, readable as text.
 
 use crate::barriers::{Barrier, BarrierTracker, Point, Use};
-use crate::image::{Format, Target};
+use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
 

@@ -143,7 +143,7 @@ impl Swapchain {
         let (swapchains, indices, waits) = ([self.raw], [index], [done]);
         let info =
             vk::PresentInfoKHR::default().wait_semaphores(&waits).swapchains(&swapchains).image_indices(&indices);
-        let queue = crate::gpu::lock(&vulkan.queue);
+        let queue = crate::lock::lock(&vulkan.queue);
         // SAFETY: the queue is locked; the image was given, is in the layout for showing, and its semaphore will be signalled.
         match unsafe { self.loader.queue_present(*queue, &info) } {
             Ok(_) => Ok(Next::Go),
@@ -193,7 +193,7 @@ impl Swapchain {
 
     /// Waits until nothing is in use and frees all of it.
     pub(crate) fn destroy(&mut self, vulkan: &Vulkan) {
-        let _queue = crate::gpu::lock(&vulkan.queue);
+        let _queue = crate::lock::lock(&vulkan.queue);
         // SAFETY: called once; after the wait nothing of it is in use. Null handles are ignored.
         unsafe {
             let _ = vulkan.device.device_wait_idle();

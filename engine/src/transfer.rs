@@ -1,8 +1,9 @@
 //! Copies outside frames: uploads, read-backs, one-time commands. Each waits until it is done.
 
 use crate::error::Named;
-use crate::gpu::{lock, Gpu, Vulkan};
-use crate::image::Format;
+use crate::gpu::{Gpu, Vulkan};
+use crate::lock::lock;
+use crate::target::Format;
 use crate::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::Allocation;

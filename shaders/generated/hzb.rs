@@ -137,7 +137,7 @@ impl ComputeStage for MeasureBlocks {}
 /// 2015; depth is reversed, so the farthest is the smallest). Twin: culling/src/hzb/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReduceDepth {
-    /// `depth` in GLSL.
+    /// Gathered: on a CPU device a texture read is a call, and so four depths cost one.
     pub depth: ImageRef,
     /// `levels` in GLSL.
     pub levels: BufferRef<types::PyramidLevel>,
@@ -159,7 +159,7 @@ impl Stage for ReduceDepth {
             spirv: include_bytes!("spirv/hzb/reduce_depth.comp.spv"),
         }],
         bindings: &[
-            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::GatheredImage, access: Access::Read },
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
@@ -394,8 +394,8 @@ impl Default for ScanBlocksConstants {
 }
 
 /// Which blocks may have objects that are due in this step, and do not lie wholly behind what was drawn? In step k
-/// are due what the last frame saw of range k and what it did not see of range k - 1. A block once hidden stays so for the rest of
-/// the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs.
+/// are due what the last frame saw of range k and what it did not see of range k - 1: in step 0 the former alone. A block once hidden stays
+/// so for the rest of the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct TestBlocks {
     /// `bounds` in GLSL.
@@ -412,6 +412,8 @@ pub struct TestBlocks {
     pub pyramid: BufferRef<f32>,
     /// By block: 1 if it is due.
     pub due: BufferRef<u32>,
+    /// What the last frame saw, by object.
+    pub seen: BufferRef<u32>,
     /// `step` in GLSL.
     pub step: u32,
     /// Specialization constants.
@@ -430,6 +432,7 @@ impl Stage for TestBlocks {
             BindingInfo { name: "levels", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "due", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "seen", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 4,
         constants: &[
@@ -457,6 +460,7 @@ impl Stage for TestBlocks {
                 self.levels.into(),
                 self.pyramid.into(),
                 self.due.into(),
+                self.seen.into(),
             ],
             bytemuck::bytes_of(&push),
             vec![self.constants.footprint_texels, u32::from(self.constants.behind), self.constants.finest_level],

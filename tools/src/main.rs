@@ -15,10 +15,10 @@ fn main() -> ExitCode {
         .init();
     // File names that are no text are left to clap, without a file of flags.
     let Some(typed) = std::env::args_os().map(|word| word.into_string().ok()).collect() else {
-        return sightline::commands::exit_code(sightline::cli::Cli::parse());
+        return sightline::cli::commands::exit_code(sightline::cli::Cli::parse());
     };
     match sightline::cli::with_config(typed) {
-        Ok(words) => sightline::commands::exit_code(sightline::cli::Cli::parse_from(words)),
+        Ok(words) => sightline::cli::commands::exit_code(sightline::cli::Cli::parse_from(words)),
         Err(error) => {
             eprintln!("sightline: {error:#}");
             ExitCode::FAILURE

@@ -2,6 +2,7 @@
 //!
 //! Order matters: commands appended by atomics change places from frame to frame, and objects of equal depth flicker.
 
+mod draw;
 pub mod twin;
 
 use crate::world::World;

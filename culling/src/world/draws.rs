@@ -1,7 +1,6 @@
 //! What is drawn with which stage: by what the target holds, what the surface does, and what is asked of the fragments.
 
 use super::{Range, View, World};
-use crate::pack::DrawList;
 use engine::{Frame, IndexedIndirect, Surface, Target};
 use shaders::types::DrawCommand;
 use shaders::{draw, BufferRef, Stage};
@@ -24,30 +23,6 @@ impl World {
             primitives: range.primitives,
             faces: range.faces,
             surface: range.surface,
-        }
-    }
-
-    /// Draws what a list holds.
-    pub fn draw(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
-        for draw in list.draws(self) {
-            self.draw_indirect(f, draw, view, target);
-        }
-    }
-
-    /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it. Not of masked objects: that no two
-    /// pipelines discard the same fragments is promised by nobody, and depth where nothing is drawn would hide what shows there.
-    pub fn draw_depth(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
-        for indirect in list.draws(self).filter(|draw| draw.surface == Surface::Opaque) {
-            let stage = draw::Depth { view: view.gpu() };
-            f.draw_unshown(stage, indirect, &target.depth_only());
-        }
-    }
-
-    /// Draws what a list holds, and sets the flag of each object of which a fragment passes the early tests: colour, depth
-    /// and visibility in one pass (EOVC thesis III.2).
-    pub fn draw_flagged(&self, f: &mut Frame, list: &DrawList, visible: BufferRef<u32>, view: &View, target: &Target) {
-        for draw in list.draws(self) {
-            self.draw_indirect_flagged(f, draw, visible, view, target);
         }
     }
 

@@ -10,7 +10,7 @@ use harness::{gpu, options, worlds, Lab, Random, Subject};
 use scenes::Projection;
 use shaders::engine::{SpinPixels, SpinWords};
 use shaders::types::DrawCommand;
-use sightline::targets::Targets;
+use sightline::run::targets::Targets;
 
 /// Twin of `engine/spin_words`.
 pub fn spun(word: u32) -> u32 {

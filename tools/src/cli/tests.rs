@@ -1,6 +1,7 @@
 //! The command line: what its flags come to, and what it refuses.
 
 use super::*;
+use crate::run::methods::parse_methods;
 use clap::CommandFactory;
 
 #[test]

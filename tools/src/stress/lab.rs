@@ -1,9 +1,9 @@
 //! A case on a device: methods run through its shots, next to the truth. Errors are the device's or its validation layer's.
 
-use crate::metrics::{compare, FrameError, FrameImages, Truth};
+use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
+use crate::run::targets::Targets;
+use crate::run::truth::draw_truth;
 use crate::stress::Case;
-use crate::targets::Targets;
-use crate::truth::draw_truth;
 use anyhow::{Context, Result};
 use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, World};
 use engine::{FrameReport, Gpu};

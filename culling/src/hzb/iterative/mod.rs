@@ -17,12 +17,13 @@ mod steps;
 pub mod twin;
 
 use super::Pyramid;
+use crate::eovc::filter_occluders;
 use crate::roc::depth_plane;
 use crate::world::Still;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
-use shaders::types::{FILTER_STRIP, MOST_STEP_RANGES};
+use shaders::types::MOST_STEP_RANGES;
 use shaders::{eovc, hzb, Stage};
 use steps::{Step, Steps};
 
@@ -56,7 +57,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "finest",
-        default: "3",
+        default: "2",
         values: "1..=3",
         help: "finest level of the pyramid: a texel is 2, 4 or 8 pixels a side",
     },
@@ -198,13 +199,12 @@ impl Iterative {
         };
         let owners = target.item.ok_or_else(needs)?;
         f.fill("hzb/clear_visible", seen, 0);
-        let strips = target.size[1].div_ceil(FILTER_STRIP);
-        let filter = eovc::FilterOccluders { owners, occluders: seen.all(), size_px: target.size, strips };
-        f.dispatch(filter, strips * target.size[0]);
+        filter_occluders(f, owners, target.size, seen.all());
         Ok(())
     }
 
-    /// Camera and objects unchanged: the last frame's lists hold.
+    /// Camera and objects unchanged: the last frame's lists hold. In a single range the first is who owned a pixel in the frame before it,
+    /// so that what the others hold shows nowhere.
     fn same_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         let stages = [
             hzb::MeasureBlocks::INFO,
@@ -218,7 +218,8 @@ impl Iterative {
         ];
         stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
         Pyramid::skip(f, Still::REASON);
-        for number in self.first_step..=self.ranges {
+        let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };
+        for number in self.first_step..=last_step {
             f.part(PARTS[number as usize]);
             let visible = self.visible[self.now].all();
             let step = Step { number, behind: number > self.first_step, seen: visible, visible };

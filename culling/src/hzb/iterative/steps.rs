@@ -142,6 +142,7 @@ impl Steps {
             levels,
             pyramid: texels,
             due: self.due.all(),
+            seen: step.seen,
             step: number,
             constants: hzb::TestBlocksConstants { footprint_texels, behind, finest_level },
         };

@@ -1,8 +1,8 @@
 //! Pictures are made small without losing a wrong pixel, and only the worst frame is kept.
 
 use super::*;
-use crate::bench::Seen;
-use crate::metrics::{compare, Truth};
+use crate::measures::metrics::{compare, Truth};
+use crate::run::bench::Seen;
 use crate::run::Measured;
 use culling::{Drawn, Work};
 
@@ -22,7 +22,7 @@ fn frame(holes: usize) -> FrameImages {
     };
     images.colour[..holes].fill([0, 0, 0, 255]);
     images.depth[..holes].fill(0.0);
-    images.items[..holes].fill(crate::metrics::NO_ITEM);
+    images.items[..holes].fill(crate::measures::metrics::NO_ITEM);
     images
 }
 
