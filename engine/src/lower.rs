@@ -4,7 +4,7 @@ use crate::barriers::{Barrier, Point};
 use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
-use crate::recorder::{IndexedIndirect, Op, Recorded};
+use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
 use crate::target::Target;
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
@@ -239,9 +239,11 @@ impl Recording<'_> {
                 colour,
                 item: target.item.is_some(),
                 depth: self.vulkan.depth,
-                depth_write: !target.depth_read_only,
+                depth_write: !target.depth_read_only && draw.surface != Surface::Translucent,
                 strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
+                faces: draw.faces,
+                blended: draw.surface == Surface::Translucent,
             }),
         )?;
         let device = &self.vulkan.device;

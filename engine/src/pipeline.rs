@@ -5,7 +5,7 @@ use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
 use crate::names::Names;
-use crate::recorder::Primitives;
+use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
@@ -35,6 +35,9 @@ pub(crate) struct DrawState {
     pub(crate) depth_write: bool,
     pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
+    pub(crate) faces: Faces,
+    /// Colours are blended by their alpha.
+    pub(crate) blended: bool,
 }
 
 type Key = (&'static str, Vec<u32>, Option<DrawState>);
@@ -263,8 +266,13 @@ fn draw_pipeline(
         Primitives::Points => vk::PrimitiveTopology::POINT_LIST,
     });
     let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-    // No face culling: mirrored transforms and open meshes are common in what users bring.
-    let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).cull_mode(vk::CullModeFlags::NONE);
+    let raster = vk::PipelineRasterizationStateCreateInfo::default()
+        .line_width(1.0)
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .cull_mode(match state.faces {
+            Faces::Both => vk::CullModeFlags::NONE,
+            Faces::Front => vk::CullModeFlags::BACK,
+        });
     let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
@@ -276,10 +284,19 @@ fn draw_pipeline(
         .src_color_blend_factor(vk::BlendFactor::ONE)
         .dst_color_blend_factor(vk::BlendFactor::ONE)
         .color_blend_op(vk::BlendOp::ADD);
-    let (formats, blends): (Vec<_>, Vec<_>) = attachment_formats(state)
-        .into_iter()
-        .map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace }))
-        .unzip();
+    let over = add
+        .src_color_blend_factor(vk::BlendFactor::SRC_ALPHA)
+        .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .src_alpha_blend_factor(vk::BlendFactor::ONE)
+        .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .alpha_blend_op(vk::BlendOp::ADD);
+    let blend = match state.colour {
+        Some(Format::Heat) => add,
+        _ if state.blended => over,
+        _ => replace,
+    };
+    let formats = attachment_formats(state);
+    let blends = vec![blend; formats.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);

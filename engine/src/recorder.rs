@@ -18,6 +18,28 @@ pub enum Primitives {
     Points,
 }
 
+/// Which sides of triangles show. Means nothing for lines and points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Faces {
+    /// Both.
+    #[default]
+    Both,
+    /// The front alone, where corners go round counter-clockwise on the screen.
+    Front,
+}
+
+/// What a surface does to what lies behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Hides it.
+    #[default]
+    Opaque,
+    /// Hides it where the fragment shader does not discard.
+    Masked,
+    /// Is blended over it by its alpha; never writes depth.
+    Translucent,
+}
+
 /// A multi-draw whose commands, and their number, lie on the GPU.
 ///
 /// Within one submission a draw without a count must not follow one with a count: lavapipe (Mesa 22.3) then takes the old
@@ -38,6 +60,10 @@ pub struct IndexedIndirect {
     pub max_draws: u32,
     /// How indices form primitives.
     pub primitives: Primitives,
+    /// Which sides show.
+    pub faces: Faces,
+    /// What it does to what lies behind it.
+    pub surface: Surface,
 }
 
 /// One recorded step.

@@ -719,6 +719,7 @@ impl Stage for TestObjects {
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
             ConstantInfo { name: "BOXES", id: 2 },
+            ConstantInfo { name: "KIND_COUNT", id: 6 },
             ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
         local_size: [64, 1, 1],
@@ -749,6 +750,7 @@ impl Stage for TestObjects {
                 self.constants.footprint_texels,
                 u32::from(self.constants.behind),
                 u32::from(self.constants.boxes),
+                self.constants.kind_count,
                 self.constants.finest_level,
             ],
         )
@@ -777,6 +779,8 @@ pub struct TestObjectsConstants {
     pub behind: bool,
     /// What the last frame did not see must show by its box as well.
     pub boxes: bool,
+    /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
+    pub kind_count: u32,
     /// `FINEST_LEVEL` in GLSL.
     pub finest_level: u32,
 }
@@ -784,7 +788,7 @@ pub struct TestObjectsConstants {
 impl Default for TestObjectsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, boxes: true, finest_level: 1 }
+        Self { footprint_texels: 4, behind: true, boxes: true, kind_count: 1, finest_level: 1 }
     }
 }
 
@@ -813,6 +817,8 @@ pub struct WriteBlocks {
     pub visible: BufferRef<u32>,
     /// `small_indices` in GLSL.
     pub small_indices: u32,
+    /// Specialization constants.
+    pub constants: WriteBlocksConstants,
 }
 
 impl Stage for WriteBlocks {
@@ -834,7 +840,7 @@ impl Stage for WriteBlocks {
             BindingInfo { name: "visible", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 4,
-        constants: &[],
+        constants: &[ConstantInfo { name: "KIND_COUNT", id: 6 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -859,7 +865,7 @@ impl Stage for WriteBlocks {
                 self.visible.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![],
+            vec![self.constants.kind_count],
         )
     }
 }
@@ -876,3 +882,17 @@ const _: () = {
     assert!(std::mem::offset_of!(WriteBlocksPush, small_indices) == 0);
     assert!(size_of::<WriteBlocksPush>() == 4);
 };
+
+/// Specialization constants of [`WriteBlocks`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WriteBlocksConstants {
+    /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
+    pub kind_count: u32,
+}
+
+impl Default for WriteBlocksConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { kind_count: 1 }
+    }
+}

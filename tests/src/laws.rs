@@ -111,7 +111,7 @@ pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: 
         let mut method = lab.make(subject, &sets);
         (
             lab.film(&mut *method, &case.shots),
-            (0..lab.world.len()).map(|object| lab.world.scene_object(object)).collect(),
+            (0..lab.world.total()).map(|object| lab.world.scene_object(object)).collect(),
         )
     };
     let ((straight, straight_scene), (mixed, mixed_scene)): ((_, Vec<usize>), (_, Vec<usize>)) =
@@ -141,12 +141,12 @@ pub fn a_resize_hides_nothing(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<
     let sizes = [[161, 97], [161, 97], [64, 64], [200, 30], [199, 31], [161, 97], [1, 1], [161, 97]];
     let shots: Vec<_> = (0..sizes.len()).map(|frame| case.shots[frame / 3 % case.shots.len()]).collect();
     let mut lab = Lab::new(gpu, case);
-    let mut sets = culling::VisibleSets::new(lab.world.len());
+    let mut sets = culling::VisibleSets::new(lab.world.total());
     let mut truths = Vec::new();
     for (size, shot) in sizes.iter().zip(&shots) {
         lab.resize(*size);
         truths.push(lab.truth(shot));
-        sets.push_items(&truths[truths.len() - 1].images().items);
+        sets.push_items(&truths[truths.len() - 1].images().visible_items());
     }
     let mut method = lab.make(subject, &sets.into());
     let mut faults = Vec::new();

@@ -7,7 +7,7 @@ pub use cache::{load, save};
 pub use sets::VisibleSets;
 
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
-use engine::{Buffer, Frame, IndexedIndirect, Placement, Target};
+use engine::{Buffer, Frame, Placement, Target};
 use shaders::types::DrawCommand;
 use shaders::ResourceId;
 use std::sync::Arc;
@@ -79,15 +79,8 @@ impl Method for Reference {
         world.update(f);
         f.clear(target);
         for (range, total) in world.ranges().iter().zip(&self.counts) {
-            let draw = IndexedIndirect {
-                vertices: world.vertices().into(),
-                instances: world.objects().into(),
-                indices: world.indices().into(),
-                commands: self.commands.all().from(range.first as usize).into(),
-                count: Some(total.all()),
-                max_draws: range.count,
-                primitives: range.primitives,
-            };
+            let commands = self.commands.all().from(range.first as usize);
+            let draw = world.multi_draw(range, commands, Some(total.all()));
             world.draw_indirect(f, draw, view, target);
         }
         Ok(())

@@ -47,8 +47,7 @@ impl Input {
             coarsest_level,
             range_count: 3,
             share: 0.5,
-            second_kind: 2_000,
-            third_kind: 3_001,
+            later_kinds: [2_000, 3_001, u32::MAX, u32::MAX, u32::MAX, u32::MAX, u32::MAX],
         };
         Input {
             texels: pyramid(&occludees.depth, SIZE, &levels),
@@ -293,7 +292,13 @@ fn run(
         shown: shown.all(),
         counts: counts.all(),
         step,
-        constants: hzb::TestObjectsConstants { footprint_texels: 4, behind, boxes: true, finest_level: input.finest },
+        constants: hzb::TestObjectsConstants {
+            footprint_texels: 4,
+            behind,
+            boxes: true,
+            kind_count: 3,
+            finest_level: input.finest,
+        },
     };
     f.dispatch_indirect(test, list.all());
     let scan = hzb::ScanBlocks {
@@ -321,6 +326,7 @@ fn run(
         commands: commands.all(),
         visible: visible.all(),
         small_indices: SMALL,
+        constants: hzb::WriteBlocksConstants { kind_count: 3 },
     };
     f.dispatch_indirect(write, list.all().from(LISTED_GRID as usize));
     f.finish().unwrap();

@@ -327,7 +327,7 @@ pub fn header(session: &Session, command: &str) -> Results {
         },
         scene: results::Scene {
             name: session.scene.name.clone(),
-            objects: session.world.len() as u64,
+            objects: session.world.total() as u64,
             triangles: session.world.triangles(),
             hash: session.scene_hash(),
         },

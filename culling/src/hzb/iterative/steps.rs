@@ -104,8 +104,7 @@ impl Steps {
             coarsest_level: pyramid.coarsest_level(),
             range_count,
             share: self.share,
-            second_kind: first_of(1),
-            third_kind: first_of(2),
+            later_kinds: std::array::from_fn(|later| first_of(later + 1)),
         };
         self.shape.look(view)?;
         self.reductions[0].write(&pyramid.grids())?;
@@ -166,7 +165,13 @@ impl Steps {
             shown: self.shown.all(),
             counts,
             step: number,
-            constants: hzb::TestObjectsConstants { footprint_texels, behind, boxes: self.tests_boxes, finest_level },
+            constants: hzb::TestObjectsConstants {
+                footprint_texels,
+                behind,
+                boxes: self.tests_boxes,
+                kind_count,
+                finest_level,
+            },
         };
         f.dispatch_indirect(test, blocks);
         let (starts, totals) = (self.starts.all(), self.totals[number as usize].all());
@@ -198,6 +203,7 @@ impl Steps {
             commands: self.commands[number as usize].all(),
             visible: step.seen,
             small_indices: self.small_indices,
+            constants: hzb::WriteBlocksConstants { kind_count },
         };
         f.dispatch_indirect(write, blocks.from(LISTED_GRID as usize));
     }
@@ -240,14 +246,8 @@ impl Steps {
     fn draws<'a>(&'a self, world: &'a World, step: u32) -> impl Iterator<Item = IndexedIndirect> + 'a {
         self.assert_made_for(world);
         let (commands, totals) = (&self.commands[step as usize], &self.totals[step as usize]);
-        world.ranges().iter().enumerate().map(move |(kind, range)| IndexedIndirect {
-            vertices: world.vertices().into(),
-            instances: world.objects().into(),
-            indices: world.indices().into(),
-            commands: commands.all().from(range.first as usize).into(),
-            count: Some(totals.all().from(kind)),
-            max_draws: range.count,
-            primitives: range.primitives,
+        world.ranges().iter().enumerate().map(move |(kind, range)| {
+            world.multi_draw(range, commands.all().from(range.first as usize), Some(totals.all().from(kind)))
         })
     }
 
