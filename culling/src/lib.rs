@@ -15,6 +15,7 @@ mod methods;
 pub mod none;
 mod options;
 pub mod pack;
+pub mod queries;
 pub mod reference;
 pub mod roc;
 pub mod translucent;

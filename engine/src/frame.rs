@@ -15,6 +15,10 @@ use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+mod occlusion;
+
+pub use occlusion::{OcclusionQueries, Queried};
+
 /// What a stage cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageTime {
@@ -65,6 +69,7 @@ pub struct FrameReport {
 pub struct Frame {
     gpu: Gpu,
     recorder: Recorder,
+    title: String,
     report: FrameReport,
     queries: Option<Queries>,
     count_statistics: bool,
@@ -82,6 +87,7 @@ impl Frame {
         Frame {
             gpu: gpu.clone(),
             recorder: Recorder::default(),
+            title: String::new(),
             report: FrameReport::default(),
             queries: None,
             count_statistics: false,
@@ -103,6 +109,11 @@ impl Frame {
     /// Measures the frame alone: no timestamp, and no barrier for its sake, stands between stages. The report then has no stages.
     pub fn without_stage_times(&mut self) {
         self.timer = None;
+    }
+
+    /// Says what the frame is of, such as the method that draws it: a label around its stages in captures.
+    pub fn title(&mut self, title: &str) {
+        self.title = title.to_owned();
     }
 
     /// Names the part of the frame that the following stages belong to ("early", "late"); "" for none.
@@ -267,7 +278,7 @@ impl Frame {
         }
         let queries = match self.queries.take() {
             Some(queries) => queries,
-            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras)?,
+            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras, &vulkan.names)?,
         };
         let result = self.run(vulkan, &queries, &ops);
         self.queries = Some(queries);
@@ -276,6 +287,7 @@ impl Frame {
 
     fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[Recorded]) -> Result<()> {
         let how = lower::How {
+            title: &self.title,
             timer: self.timer,
             statistics: if self.count_statistics { queries.statistics } else { None },
             timestamps: queries.timestamps,
@@ -306,16 +318,21 @@ impl Frame {
     /// Runs what was recorded, waits, and reads a buffer: a read-back in the middle of a frame. What that takes beyond the
     /// stages themselves is a row of its own, `frame/read_back`, so that the stall shows.
     pub fn read<T: Pod>(&mut self, buffer: &Buffer<T>) -> Result<Vec<T>> {
+        self.stalled("frame/read_back", |_| buffer.read())
+    }
+
+    /// Waits for what was recorded and reads something of it; a stall, with a row of its own beside the stages' times.
+    fn stalled<T>(&mut self, label: &str, read: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         let (first, since) = (self.report.stages.len(), Instant::now());
         self.submit_and_wait()?;
-        let data = buffer.read()?;
+        let data = read(self)?;
         self.host_since = Instant::now();
         if self.timer.is_none() {
             return Ok(data);
         }
         let stages: f64 = self.report.stages[first..].iter().map(|stage| stage.ms).sum();
         let stall = (since.elapsed().as_secs_f64() * 1e3 - stages).max(0.0);
-        self.report.stages.push(StageTime { label: self.recorder.label("frame/read_back"), ms: stall });
+        self.report.stages.push(StageTime { label: self.recorder.label(label), ms: stall });
         Ok(data)
     }
 

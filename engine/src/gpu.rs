@@ -7,6 +7,7 @@ use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::instance::Instance;
 use crate::lock::lock;
+use crate::names::Names;
 use crate::pipeline::Pipelines;
 use crate::retired::RetiredList;
 use crate::timers::{QueryStore, TimerMode};
@@ -58,7 +59,7 @@ pub(crate) struct Inner {
 pub(crate) struct Vulkan {
     pub(crate) device: ash::Device,
     pub(crate) descriptors: Descriptors,
-    pub(crate) labels: Option<ash::ext::debug_utils::Device>,
+    pub(crate) names: Names,
     pub(crate) queue: Mutex<vk::Queue>,
     pub(crate) pool: Mutex<vk::CommandPool>,
     pub(crate) allocator: ManuallyDrop<Mutex<Allocator>>,
@@ -187,6 +188,7 @@ fn create_device(
         .multi_draw_indirect(extras.has(Extra::MultiDrawIndirect))
         .draw_indirect_first_instance(true)
         .fragment_stores_and_atomics(true)
+        .occlusion_query_precise(extras.has(Extra::OcclusionQueryPrecise))
         .pipeline_statistics_query(extras.has(Extra::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
         .draw_indirect_count(extras.has(Extra::DrawIndirectCount))
@@ -226,14 +228,17 @@ impl Vulkan {
             unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }
                 .is_some();
         let has_labels = has_labels && info.extras.has(Extra::DebugUtils);
-        let labels = has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device));
+        let names = Names(has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device)));
+        names.give(device.handle(), "device");
         // SAFETY: the family was asked for when the device was made.
         let queue = unsafe { device.get_device_queue(family, 0) };
+        names.give(queue, "queue");
         let pool_info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(family)
             .flags(vk::CommandPoolCreateFlags::TRANSIENT);
         // SAFETY: the device is alive.
         let pool = unsafe { device.create_command_pool(&pool_info, None) }.named("vkCreateCommandPool")?;
+        names.give(pool, "commands");
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.raw.clone(),
             device: device.clone(),
@@ -243,10 +248,10 @@ impl Vulkan {
             allocation_sizes: Default::default(),
         })
         .map_err(|source| Error::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, source })?;
-        let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref())?;
+        let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref(), &names)?;
         Ok(Vulkan {
             descriptors,
-            labels,
+            names,
             queue: Mutex::new(queue),
             pool: Mutex::new(pool),
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
@@ -310,10 +315,7 @@ impl Vulkan {
 
     /// Gives a Vulkan object the name that captures and messages show.
     pub(crate) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
-        let (Some(labels), Ok(name)) = (&self.labels, std::ffi::CString::new(name)) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
-        // SAFETY: the handle was just made from this device. A failing name is no reason to stop.
-        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+        self.names.give(handle, name);
     }
 }
 

@@ -13,8 +13,15 @@ use ash::vk;
 use shaders::{Bound, BoundStage};
 use vk::Handle;
 
+mod queried;
+
+/// Bytes of an indexed indirect command.
+const COMMAND_BYTES: u32 = 20;
+
 /// How a submission is run.
-pub(crate) struct How {
+pub(crate) struct How<'a> {
+    /// What all of it is labelled with; nothing where it is empty.
+    pub(crate) title: &'a str,
     /// None: stages are not timed.
     pub(crate) timer: Option<TimerMode>,
     pub(crate) statistics: Option<vk::QueryPool>,
@@ -33,7 +40,7 @@ struct Recording<'a> {
     commands: vk::CommandBuffer,
 }
 
-pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowered> {
+pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<Lowered> {
     let stamps = ops.len() as u32 + 1;
     if stamps > MAX_TIMESTAMPS {
         return Err(Error::TooLarge {
@@ -46,7 +53,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
     }
     assert_counts_do_not_lapse(ops);
     vulkan.descriptors.begin(&vulkan.device, ops)?;
-    let commands = vulkan.begin_commands()?;
+    let commands = vulkan.begin_commands("frame")?;
     let recording = Recording { vulkan, commands };
     let device = &vulkan.device;
     let pools = [(how.timestamps, stamps), (how.statistics, 1)];
@@ -64,6 +71,9 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
         // SAFETY: the query was reset above.
         unsafe { device.cmd_begin_query(commands, pool, 0, vk::QueryControlFlags::empty()) };
     }
+    if !how.title.is_empty() {
+        recording.label(how.title);
+    }
     recording.stamp(how, 0);
     for (index, recorded) in ops.iter().enumerate() {
         recording.label(&recorded.label);
@@ -74,6 +84,9 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
         }
         recording.op(&recorded.op)?;
         recording.stamp(how, index as u32 + 1);
+        recording.end_label();
+    }
+    if !how.title.is_empty() {
         recording.end_label();
     }
     if let Some(pool) = how.statistics {
@@ -88,7 +101,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
 fn assert_counts_do_not_lapse(ops: &[Recorded]) {
     let mut counted = false;
     for recorded in ops {
-        if let Op::Draw { draw, .. } = &recorded.op {
+        if let Op::Draw { draw, .. } | Op::Query { draw, .. } = &recorded.op {
             assert!(
                 draw.count.is_some() || !counted,
                 "{}: a draw without a count after one with a count",
@@ -100,7 +113,7 @@ fn assert_counts_do_not_lapse(ops: &[Recorded]) {
 }
 
 impl Recording<'_> {
-    fn stamp(&self, how: &How, index: u32) {
+    fn stamp(&self, how: &How<'_>, index: u32) {
         let (Some(timer), Some(pool)) = (how.timer, how.timestamps) else { return };
         let device = &self.vulkan.device;
         // SAFETY: `index` is within the pool: `lower` checked it.
@@ -111,7 +124,7 @@ impl Recording<'_> {
     }
 
     fn label(&self, label: &str) {
-        let (Some(labels), Ok(name)) = (&self.vulkan.labels, std::ffi::CString::new(label)) else { return };
+        let (Some(labels), Ok(name)) = (&self.vulkan.names.0, std::ffi::CString::new(label)) else { return };
         // SAFETY: the name lives through the call; every label is ended by `end_label`.
         unsafe {
             labels.cmd_begin_debug_utils_label(self.commands, &vk::DebugUtilsLabelEXT::default().label_name(&name))
@@ -119,7 +132,7 @@ impl Recording<'_> {
     }
 
     fn end_label(&self) {
-        if let Some(labels) = &self.vulkan.labels {
+        if let Some(labels) = &self.vulkan.names.0 {
             // SAFETY: a label is open.
             unsafe { labels.cmd_end_debug_utils_label(self.commands) };
         }
@@ -158,6 +171,9 @@ impl Recording<'_> {
                 unsafe { device.cmd_dispatch_indirect(self.commands, vk::Buffer::from_raw(groups.raw), groups.offset) };
             }
             Op::Draw { stage, draw, target } => self.draw(stage, draw, target)?,
+            Op::Query { stage, draw, queries, first_query, target } => {
+                self.query(stage, draw, (queries, *first_query), target)?;
+            }
             Op::Clear { target } => self.rendering(target, vk::AttachmentLoadOp::CLEAR, || ()),
             Op::Fill { buffer, value } => {
                 let (raw, offset, size) = range(buffer);
@@ -184,6 +200,38 @@ impl Recording<'_> {
     }
 
     fn draw(&self, stage: &BoundStage, draw: &IndexedIndirect, target: &Target) -> Result<()> {
+        let device = &self.vulkan.device;
+        let (commands, commands_at, _) = range(&draw.commands);
+        // SAFETY: inside a rendering with pipeline and buffers bound; commands and count are alive and in range.
+        self.draw_with(stage, draw, target, || unsafe {
+            match draw.count {
+                Some(count) => device.cmd_draw_indexed_indirect_count(
+                    self.commands,
+                    commands,
+                    commands_at,
+                    vk::Buffer::from_raw(count.raw),
+                    count.offset,
+                    draw.max_draws,
+                    COMMAND_BYTES,
+                ),
+                None => {
+                    for (first, count) in pieces(draw.max_draws, self.vulkan.info.most_draws) {
+                        let at = commands_at + u64::from(first) * u64::from(COMMAND_BYTES);
+                        device.cmd_draw_indexed_indirect(self.commands, commands, at, count, COMMAND_BYTES);
+                    }
+                }
+            }
+        })
+    }
+
+    /// Runs `inside` in a rendering to the target, with the stage's pipeline and the draw's buffers bound.
+    fn draw_with(
+        &self,
+        stage: &BoundStage,
+        draw: &IndexedIndirect,
+        target: &Target,
+        inside: impl FnOnce(),
+    ) -> Result<()> {
         let colour = target.colour.map(|(_, format)| format);
         self.bind(
             stage,
@@ -201,8 +249,6 @@ impl Recording<'_> {
         let device = &self.vulkan.device;
         let (vertices, vertices_at, _) = range(&draw.vertices);
         let (indices, indices_at, _) = range(&draw.indices);
-        let (commands, commands_at, _) = range(&draw.commands);
-        let stride = 20;
         self.rendering(target, vk::AttachmentLoadOp::LOAD, || {
             // SAFETY: inside a rendering with the formats the pipeline was made for; buffers are alive and in range.
             unsafe {
@@ -212,24 +258,8 @@ impl Recording<'_> {
                     device.cmd_bind_vertex_buffers(self.commands, INSTANCE_BINDING, &[instances], &[at]);
                 }
                 device.cmd_bind_index_buffer(self.commands, indices, indices_at, vk::IndexType::UINT32);
-                match draw.count {
-                    Some(count) => device.cmd_draw_indexed_indirect_count(
-                        self.commands,
-                        commands,
-                        commands_at,
-                        vk::Buffer::from_raw(count.raw),
-                        count.offset,
-                        draw.max_draws,
-                        stride,
-                    ),
-                    None => {
-                        for (first, count) in pieces(draw.max_draws, self.vulkan.info.most_draws) {
-                            let at = commands_at + u64::from(first) * u64::from(stride);
-                            device.cmd_draw_indexed_indirect(self.commands, commands, at, count, stride);
-                        }
-                    }
-                }
             }
+            inside();
         });
         Ok(())
     }

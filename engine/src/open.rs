@@ -2,7 +2,8 @@
 
 use crate::features::Extra;
 use crate::{
-    Buffer, Faces, Format, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Result, Surface, Target, TimerMode,
+    Buffer, Faces, Format, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Result, Surface, Target,
+    TimerMode,
 };
 
 impl Gpu {

@@ -4,6 +4,7 @@ use crate::depth::DepthFormat;
 use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
+use crate::names::Names;
 use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
@@ -51,10 +52,11 @@ pub(crate) struct Pipelines {
     cache: vk::PipelineCache,
     cache_file: Option<PathBuf>,
     info: AdapterInfo,
+    names: Names,
 }
 
 impl Pipelines {
-    pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>) -> Result<Self> {
+    pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>, names: &Names) -> Result<Self> {
         let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
         let cache = pipeline_cache::load(device, cache_file.as_deref())?;
         // Nearest and clamped to the edge, as filled in; texels are gathered, never filtered.
@@ -64,6 +66,8 @@ impl Pipelines {
             .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
         // SAFETY: the device is alive; the info lives through the call.
         let sampler = unsafe { device.create_sampler(&nearest, None) }.named("vkCreateSampler")?;
+        names.give(cache, "pipelines");
+        names.give(sampler, "gathering");
         Ok(Pipelines {
             sampler,
             made: Mutex::default(),
@@ -72,6 +76,7 @@ impl Pipelines {
             cache,
             cache_file,
             info: info.clone(),
+            names: names.clone(),
         })
     }
 
@@ -94,6 +99,7 @@ impl Pipelines {
             None => self.compute(device, stage, layout)?,
             Some(state) => self.graphics(device, stage, layout, state)?,
         };
+        self.names.give(raw, stage.info.name);
         let pipeline = Pipeline { raw, layout, set, push_stages: stage_flags(stage.info) };
         *lock(&self.made_any) = true;
         lock(&self.made).insert(key, pipeline);
@@ -138,6 +144,8 @@ impl Pipelines {
         let layout_info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(used);
         // SAFETY: as above.
         let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.named("vkCreatePipelineLayout")?;
+        self.names.give(set, info.name);
+        self.names.give(layout, info.name);
         layouts.insert(info.name, (set, layout));
         Ok((set, layout))
     }
@@ -145,7 +153,7 @@ impl Pipelines {
     fn compute(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
         let constants = Constants::new(stage);
         let specialization = constants.info();
-        let module = shader(device, &stage.info.modules[0])?;
+        let module = self.shader(device, stage.info, &stage.info.modules[0])?;
         // A stage whose work group should be one subgroup says so by a constant of this name; the size is then required. It must
         // be right, if slower, whatever subgroups there are: not every device takes a size.
         let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
@@ -179,7 +187,7 @@ impl Pipelines {
         let specialization = constants.info();
         let mut modules = Vec::new();
         for module in stage.info.modules {
-            modules.push((module.kind, shader(device, module)?));
+            modules.push((module.kind, self.shader(device, stage.info, module)?));
         }
         let stages: Vec<_> = modules
             .iter()
@@ -197,6 +205,16 @@ impl Pipelines {
             unsafe { device.destroy_shader_module(module, None) };
         }
         made
+    }
+
+    fn shader(&self, device: &ash::Device, stage: &StageInfo, module: &ShaderModule) -> Result<vk::ShaderModule> {
+        let words: Vec<u32> =
+            module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
+        let made = unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")?;
+        self.names.give(made, stage.name);
+        Ok(made)
     }
 
     pub(crate) fn destroy(&self, device: &ash::Device) {
@@ -358,14 +376,6 @@ impl Constants {
     fn info(&self) -> vk::SpecializationInfo<'_> {
         vk::SpecializationInfo::default().map_entries(&self.entries).data(&self.bytes)
     }
-}
-
-fn shader(device: &ash::Device, module: &ShaderModule) -> Result<vk::ShaderModule> {
-    let words: Vec<u32> =
-        module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
-    let info = vk::ShaderModuleCreateInfo::default().code(&words);
-    // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
-    unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")
 }
 
 fn first(

@@ -6,6 +6,7 @@
 use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
+use crate::names::Names;
 use crate::{AdapterInfo, Result};
 use ash::vk;
 use std::fmt;
@@ -46,7 +47,7 @@ pub(crate) struct Queries {
 pub(crate) struct QueryStore(Mutex<Vec<Queries>>);
 
 impl QueryStore {
-    pub(crate) fn take(&self, device: &ash::Device, extras: Extras) -> Result<Queries> {
+    pub(crate) fn take(&self, device: &ash::Device, extras: Extras, names: &Names) -> Result<Queries> {
         if let Some(queries) = lock(&self.0).pop() {
             return Ok(queries);
         }
@@ -59,10 +60,12 @@ impl QueryStore {
                 vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES
                     | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
             );
-        let made = |info: &vk::QueryPoolCreateInfo<'_>, extra| {
+        let made = |info: &vk::QueryPoolCreateInfo<'_>, extra: Extra| {
             // SAFETY: the device is alive, and has what the pool is for.
             let make = || unsafe { device.create_query_pool(info, None) }.named("vkCreateQueryPool");
-            extras.has(extra).then(make).transpose()
+            let pool = extras.has(extra).then(make).transpose()?;
+            pool.into_iter().for_each(|pool| names.give(pool, extra.name()));
+            Ok(pool)
         };
         Ok(Queries {
             timestamps: made(&timestamps, Extra::Timestamps)?,

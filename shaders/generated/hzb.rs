@@ -92,7 +92,8 @@ pub struct MeasureBlocks {
     pub bounds: BufferRef<types::Bounds>,
     /// `spans` in GLSL.
     pub spans: BufferRef<types::BlockSpan>,
-    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
+    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before;
+    /// nothing is said where there is a single range.
     pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,

@@ -9,6 +9,7 @@ pub mod farthest;
 pub mod frustum;
 pub mod hzb;
 pub mod pack;
+pub mod queries;
 pub mod roc;
 pub mod translucent;
 pub mod types;
@@ -66,6 +67,8 @@ pub const STAGES: &[&StageInfo] = &[
     <pack::WriteCommands as Stage>::INFO,
     <pack::WriteIndices as Stage>::INFO,
     <pack::WriteInstances as Stage>::INFO,
+    <queries::TestNodes as Stage>::INFO,
+    <queries::TestObjects as Stage>::INFO,
     <roc::AssignRanges as Stage>::INFO,
     <roc::ListRanges as Stage>::INFO,
     <roc::MeasureBoxes as Stage>::INFO,

@@ -67,13 +67,13 @@ pub fn skipping_changes_no_pixel(gpu: &Gpu, subject: &Subject, case: &Case) -> V
     faults
 }
 
-/// Methods that test more finely where earlier frames saw something, and filter occluders every few frames: how many frames
+/// Methods that test more finely where earlier frames saw something, ask again only now and then, or filter occluders every few frames: how many frames
 /// ran decides which hidden objects they draw, never what is seen. The law is about pictures.
-const LEARNING: [&str; 1] = ["eovc"];
+const LEARNING: [&str; 3] = ["eovc", "chc", "nohc"];
 
 /// Methods that leave out a draw while nothing changes, of objects of which a frame before found that they own no pixel: they may draw
-/// less where they skip, but never anything else.
-const DRAWS_LESS: [&str; 1] = ["hzb-iterative"];
+/// less where they skip, but never anything else. `auto` begins with one.
+const DRAWS_LESS: [&str; 2] = ["hzb-iterative", "auto"];
 
 fn draws_no_more(one: &Take, other: &Take) -> bool {
     one.drawn.objects.iter().zip(&other.drawn.objects).all(|(one, other)| *other || !*one)
@@ -97,7 +97,7 @@ fn differences(place: &str, one: &Take, other: &Take) -> Vec<String> {
 
 /// Methods whose sets follow from fragments as they are drawn: one of two objects at the same depth owns the pixel, and an
 /// object drawn before its occluder is seen. Their depths do not depend on the order all the same.
-const ORDER_DECIDES: [&str; 5] = ["ref", "roc", "eovc", "hzb-iterative", "auto"];
+const ORDER_DECIDES: [&str; 8] = ["ref", "roc", "eovc", "hzb-iterative", "auto", "query-wait", "chc", "nohc"];
 
 /// Objects in another order: the same objects are drawn, and depths are the same. Only for scenes that do not move.
 pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {

@@ -140,7 +140,7 @@ impl Method for Eovc {
         let counted = self.counters.read()?;
         let boxes = u64::from(self.groups.groups.read_len()?) + u64::from(self.groups.singles.read_len()?);
         let [rays, node_visits, early_stops] = [0, 1, 2].map(|counter| u64::from(counted[counter]));
-        Ok(Work { boxes, rays, node_visits, early_stops, queries: 0 })
+        Ok(Work { boxes, rays, node_visits, early_stops, ..Work::default() })
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {

@@ -5,7 +5,7 @@ mod texels;
 
 use super::View;
 use crate::Result;
-use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Surface, Target};
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Queried, Surface, Target};
 use scenes::{Scene, Wrap};
 use shaders::draw::{MaskedVertex, ObjectsVertex};
 use shaders::types::{Material, WRAP_BITS, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
@@ -52,6 +52,40 @@ impl Detail {
             (false, true) => f.draw(draw::TexturedAndItems { object_materials, materials, texels, view }, draw, target),
             (true, false) => f.draw(draw::Masked { object_materials, materials, texels, view }, draw, target),
             (true, true) => f.draw(draw::MaskedAndItems { object_materials, materials, texels, view }, draw, target),
+        }
+    }
+
+    /// The same, each command counted by a query: of masked objects, what is left of them.
+    pub(super) fn query(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        queried: Queried<'_>,
+        view: &View,
+        target: &Target,
+    ) {
+        let (object_materials, materials, texels) = self.parts();
+        let (view, is_cut) = (view.gpu(), draw.surface == Surface::Masked);
+        let draw = self.dressed(draw);
+        match (is_cut, target.item.is_some()) {
+            (false, false) => {
+                f.query_objects(draw::Textured { object_materials, materials, texels, view }, draw, queried, target)
+            }
+            (false, true) => f.query_objects(
+                draw::TexturedAndItems { object_materials, materials, texels, view },
+                draw,
+                queried,
+                target,
+            ),
+            (true, false) => {
+                f.query_objects(draw::Masked { object_materials, materials, texels, view }, draw, queried, target)
+            }
+            (true, true) => f.query_objects(
+                draw::MaskedAndItems { object_materials, materials, texels, view },
+                draw,
+                queried,
+                target,
+            ),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What is drawn with which stage: by what the target holds, what the surface does, and what is asked of the fragments.
 
 use super::{Range, View, World};
-use engine::{Frame, IndexedIndirect, Surface, Target};
+use engine::{Frame, IndexedIndirect, Queried, Surface, Target};
 use shaders::types::DrawCommand;
 use shaders::{draw, BufferRef, Stage};
 
@@ -79,6 +79,27 @@ impl World {
             f.draw(draw::ObjectsItemsAndFlags { visible, view: view.gpu() }, draw, &target);
         } else {
             f.draw(draw::ObjectsAndFlags { visible, view: view.gpu() }, draw, &target);
+        }
+    }
+
+    /// Draws objects, each command counted by a query.
+    pub(crate) fn query_indirect(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        queried: Queried<'_>,
+        view: &View,
+        target: &Target,
+    ) {
+        let (draw, target) = self.prepared(draw, target);
+        if matches!(target.colour, Some((_, engine::Format::Heat))) {
+            f.query_objects(draw::Overdraw { view: view.gpu() }, draw, queried, &target);
+        } else if let Some(detail) = &self.detail {
+            detail.query(f, draw, queried, view, &target);
+        } else if target.item.is_some() {
+            f.query_objects(draw::ObjectsAndItems { view: view.gpu() }, draw, queried, &target);
+        } else {
+            f.query_objects(draw::Objects { view: view.gpu() }, draw, queried, &target);
         }
     }
 

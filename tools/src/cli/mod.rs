@@ -1,5 +1,6 @@
 //! The command line.
 
+mod colours;
 pub mod commands;
 mod compare;
 mod config;
@@ -10,6 +11,7 @@ mod sweep;
 mod tests;
 mod view;
 
+pub use colours::coloured;
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
@@ -35,7 +37,7 @@ use std::path::{Path, PathBuf};
     name = "sightline",
     version,
     max_term_width = 100,
-    after_help = "Start with:\n  sightline bench --scale 0.1\n  sightline bench --scene model.glb --method none,hzb --frames 60\n  sightline shot --method hzb --view overdraw --out overdraw.png"
+    after_help = "Start with:\n  sightline bench --scale 0.1\n  sightline bench --scene model.glb --method none,hzb --frames 60\n  sightline shot --method hzb --view overdraw --out overdraw.png\n\nExit code: 0 all went well; 1 an error, which one line on stderr names, a loss that `stress` found, or a gate of `compare` that was true; 2 a command line that cannot be read, or an error of `compare`, so that CI can tell it from a gate.\n\nMessages are coloured on a terminal only, and not there either if NO_COLOR is set; tables and JSON never are."
 )]
 pub struct Cli {
     /// What to do.
@@ -194,7 +196,7 @@ pub struct BenchArgs {
     /// Only times: leave out the truth, the errors and the pictures' measures
     #[arg(long)]
     pub no_metrics: bool,
-    /// Captures this frame of each method with RenderDoc
+    /// Captures this frame of each method with RenderDoc, to a file a method in --out; times then mean little
     #[arg(long, value_name = "FRAME")]
     pub capture: Option<usize>,
     /// Prints each stage: ran or skipped, its time, what skipping it saves a frame, and why it was skipped; then the parts of
@@ -267,6 +269,10 @@ pub struct ShotArgs {
     /// The frame of the run
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub frame: usize,
+    /// Captures this frame with RenderDoc, to a file beside the picture: that of --frame, or one of the two before it, which run
+    /// so that the method has a past
+    #[arg(long, value_name = "FRAME")]
+    pub capture: Option<usize>,
     /// What to show
     #[arg(long, value_name = "VIEW", default_value = "colour")]
     pub view: Show,

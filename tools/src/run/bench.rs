@@ -3,15 +3,16 @@
 mod pairs;
 mod stages;
 
-use crate::measures::metrics::{FrameImages, MethodErrors, Truth};
+use crate::measures::metrics::{FrameImages, MethodErrors};
 use crate::measures::stats;
 use crate::results::{self, FrameMs, Frames, Results, SCHEMA};
+use crate::run::capture::{self, CaptureOrder};
 use crate::run::session::Session;
 use crate::run::truth::RunTruth;
 use crate::run::{Contender, Measured};
 use anyhow::{Context, Result};
 use culling::{Entry, Options, VisibleSets, Work};
-use engine::{Capture, FrameReport, TimerMode};
+use engine::{FrameReport, TimerMode};
 use pairs::Pair;
 use stages::{stage_times, stages};
 use std::path::PathBuf;
@@ -27,22 +28,12 @@ pub struct BenchOptions {
     pub metrics: bool,
     /// Labels of methods whose pictures are compared with each other, the one to compare with first. Needs `metrics`.
     pub pairs: Vec<[String; 2]>,
-    /// The frame to capture, if any.
+    /// The frame of each method to capture, if any: as its stages are timed.
     pub capture: Option<CaptureOrder>,
     /// Where visible sets are cached.
     pub cache: Option<PathBuf>,
     /// What was typed, for the results.
     pub command: String,
-}
-
-/// Which frame of each method RenderDoc captures, and where to.
-pub struct CaptureOrder {
-    /// The frame.
-    pub frame: usize,
-    /// The folder of the capture files.
-    pub folder: PathBuf,
-    /// The loaded library.
-    pub library: Capture,
 }
 
 /// Told how far the benchmark is: what it does, steps done, steps in all.
@@ -97,11 +88,11 @@ pub fn bench_watched(
         contenders.push(Contender::new(session, entry, settings.clone(), &truth.sets)?);
     }
     let mut records: Vec<Records> = contenders.iter().map(|_| Records::default()).collect();
-    time(session, &mut contenders, &mut records, options.warmup, progress)?;
+    time(session, &mut contenders, &mut records, &mut options, progress)?;
     let mut pairs = Pair::of(&options.pairs, &contenders)?;
     if let Some(images) = &truth.run {
         let followers = Followers { pairs: &mut pairs, progress, watch };
-        measure(session, &mut contenders, &mut records, images, &mut options, followers)?;
+        measure(session, &mut contenders, &mut records, images, &options, followers)?;
     }
     let mut methods: Vec<_> =
         contenders.iter().zip(&records).map(|(contender, records)| method(contender, records, shared_mib)).collect();
@@ -174,9 +165,10 @@ fn time(
     session: &mut Session,
     contenders: &mut [Contender],
     records: &mut [Records],
-    warmup: usize,
+    options: &mut BenchOptions,
     progress: Progress<'_>,
 ) -> Result<()> {
+    let warmup = options.warmup;
     progress("warming up", 0, session.frames());
     warm_up(session, contenders, warmup)?;
     for frame in 0..session.frames() {
@@ -188,7 +180,10 @@ fn time(
     repeat_staged(session, contenders, records, warmup)?;
     for frame in 0..session.frames() {
         for (contender, records) in contenders.iter_mut().zip(records.iter_mut()) {
-            records.staged.push(contender.staged(session, frame)?);
+            let label = contender.label();
+            let gpu = session.gpu.clone();
+            let run = || contender.staged(session, frame);
+            records.staged.push(capture::around(&mut options.capture, &gpu, (frame, &label), run)?);
         }
         progress("timing stages", frame + 1, session.frames());
     }
@@ -207,7 +202,7 @@ fn measure(
     contenders: &mut [Contender],
     records: &mut [Records],
     truth: &RunTruth,
-    options: &mut BenchOptions,
+    options: &BenchOptions,
     followers: Followers<'_>,
 ) -> Result<()> {
     let Followers { pairs, progress, watch } = followers;
@@ -216,11 +211,7 @@ fn measure(
         let truth = truth.frame(session, frame)?;
         let mut pictures = Vec::new();
         for (place, (contender, records)) in contenders.iter_mut().zip(records.iter_mut()).enumerate() {
-            let order = options.capture.as_mut().filter(|order| order.frame == frame);
-            let measured = match order {
-                None => contender.measured(session, frame, &truth)?,
-                Some(order) => order.measured(session, contender, &truth)?,
-            };
+            let measured = contender.measured(session, frame, &truth)?;
             watch(Seen { label: &contender.label(), frame, truth: truth.images(), measured: &measured })?;
             let images = records.push(measured);
             pictures.push(pairs.iter().any(|pair| pair.needs(place)).then_some(images));
@@ -229,18 +220,6 @@ fn measure(
         progress("measuring errors", frame + 1, session.frames());
     }
     Ok(())
-}
-
-impl CaptureOrder {
-    fn measured(&mut self, session: &mut Session, contender: &mut Contender, truth: &Truth) -> Result<Measured> {
-        let name: String =
-            contender.label().chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).collect();
-        self.library.start(&session.gpu, &self.folder.join(name))?;
-        let measured = contender.measured(session, self.frame, truth)?;
-        let file = self.library.end(&session.gpu)?;
-        tracing::info!("{}: captured to {}", contender.label(), file.display());
-        Ok(measured)
-    }
 }
 
 impl Records {
@@ -275,6 +254,8 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         draws_mean: mean(&records.draws),
         overdraw_mean: stats::mean(&records.overdraw),
         queries_mean: mean(&records.counted(|work| work.queries)),
+        state_changes_mean: mean(&records.counted(|work| work.state_changes)),
+        waits_mean: mean(&records.counted(|work| work.waits)),
         rays_mean: mean(&records.counted(|work| work.rays)),
         boxes_mean: mean(&records.counted(|work| work.boxes)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),

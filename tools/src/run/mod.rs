@@ -1,6 +1,7 @@
 //! Methods running through the frames of a session: once for the clock, once for the truth.
 
 pub mod bench;
+pub mod capture;
 pub mod methods;
 pub mod session;
 pub mod sweep;
@@ -137,6 +138,7 @@ impl Contender {
         };
         let before = session.gpu.memory_mib();
         let mut f = session.gpu.frame();
+        f.title(&self.options.label());
         if watched == Watched::Nothing {
             f.without_stage_times();
         }

@@ -10,6 +10,7 @@ use super::text::Text;
 use super::ViewOptions;
 use super::{hud, saved, LONGEST_STEP, SCRIPTED_FRAME_S};
 use crate::results::output::say;
+use crate::run::capture::{self, CaptureOrder};
 use crate::run::session::SessionOptions;
 use anyhow::{anyhow, Context, Result};
 use engine::{Format, Gpu, GpuOptions, Image, Panel, Shown};
@@ -34,6 +35,7 @@ struct Stage {
 /// The program while its window is open.
 pub struct App {
     wish: ViewOptions,
+    capture: Option<CaptureOrder>,
     script: VecDeque<Step>,
     /// Until it is on a device.
     scene: Option<Scene>,
@@ -56,10 +58,11 @@ pub struct App {
 
 impl App {
     /// A program whose window is not open yet.
-    pub fn new(wish: ViewOptions, scene: Scene) -> Self {
+    pub fn new(wish: ViewOptions, scene: Scene, capture: Option<CaptureOrder>) -> Self {
         App {
             script: wish.keys.clone().unwrap_or_default().into(),
             wish,
+            capture,
             scene: Some(scene),
             stage: None,
             window: None,
@@ -95,11 +98,6 @@ impl App {
             None => Ok(()),
             Some(message) => Err(anyhow!("validation, closing the window: {}", message.text)),
         }
-    }
-
-    /// True if nobody watches: time goes on evenly, and the window closes by itself.
-    fn is_scripted(&self) -> bool {
-        self.wish.keys.is_some() || self.wish.screenshot.is_some()
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
@@ -166,7 +164,7 @@ impl App {
     /// One frame: the next step of the script, the camera, the picture, and the window.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         self.next_step(event_loop)?;
-        let scripted = self.is_scripted();
+        let scripted = self.wish.is_scripted();
         let (Some(stage), Some(controls), Some(window)) = (&mut self.stage, &mut self.controls, &self.window) else {
             return Ok(());
         };
@@ -187,7 +185,9 @@ impl App {
         if controls.recording {
             self.recorded.push(shot);
         }
-        stage.lab.frame(controls, &shot)?;
+        let gpu = stage.lab.session.gpu.clone();
+        let lab = &mut stage.lab;
+        capture::around(&mut self.capture, &gpu, (self.frames as usize, "view"), || lab.frame(controls, &shot))?;
         let texts = texts(&stage.lab, controls, &self.told, size, window.scale_factor());
         let panels: Vec<Panel<'_>> = texts.iter().map(|(text, at)| panel(text, *at)).collect();
         self.rests = stage.shown.show(stage.lab.picture(), &panels, wanted)? != Shown::Yes;
@@ -197,7 +197,7 @@ impl App {
     /// Counts a frame; a run that nobody watches ends with its last one.
     fn count(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         self.frames += 1;
-        if self.is_scripted() && self.frames as usize >= self.wish.session.frames {
+        if self.wish.is_scripted() && self.frames as usize >= self.wish.session.frames {
             if !self.script.is_empty() {
                 return Err(anyhow!(
                     "--keys: {} steps were left after {} frames; give more --frames",

@@ -13,8 +13,10 @@ mod pictures;
 mod saved;
 mod text;
 
+use crate::run::bench::make_folder;
+use crate::run::capture::CaptureOrder;
 use crate::run::session::SessionOptions;
-use anyhow::{anyhow, Context, Result};
+use anyhow::{anyhow, bail, Context, Result};
 use app::App;
 use culling::{Entry, Options};
 use engine::GpuOptions;
@@ -40,8 +42,17 @@ pub struct ViewOptions {
     pub keys: Option<Vec<keys::Step>>,
     /// Where to keep what is shown in the last frame; the window closes after it.
     pub screenshot: Option<PathBuf>,
+    /// The frame of the window to capture with RenderDoc.
+    pub capture: Option<usize>,
     /// Folder of what keys save.
     pub out: PathBuf,
+}
+
+impl ViewOptions {
+    /// True if nobody watches: time goes on evenly, and the window closes by itself.
+    fn is_scripted(&self) -> bool {
+        self.keys.is_some() || self.screenshot.is_some()
+    }
 }
 
 /// Opens the window and stays until it is closed.
@@ -53,7 +64,14 @@ pub fn run(wish: ViewOptions) -> Result<()> {
     let scene_options = scenes::SceneOptions { scale: options.scale, seed: options.seed, detail: options.detail };
     let event_loop = event_loop()?;
     let scene = scenes::open(&options.scene, &scene_options)?;
-    let mut app = App::new(wish, scene);
+    if wish.is_scripted() && wish.capture.is_some_and(|frame| frame >= wish.session.frames) {
+        bail!("--capture: the window has only {} frames, counted from 0", wish.session.frames);
+    }
+    let order = wish.capture.map(|frame| {
+        make_folder(&wish.out)?;
+        CaptureOrder::new(frame, &wish.out)
+    });
+    let mut app = App::new(wish, scene, order.transpose()?);
     event_loop.run_app(&mut app).context("the window system stopped")?;
     app.outcome()
 }

@@ -16,10 +16,8 @@ pub(super) struct Step {
     pub number: u32,
     /// Something was drawn before it.
     pub behind: bool,
-    /// What the last frame saw, by object.
+    /// What the last frame saw, by object; what this one draws is added.
     pub seen: BufferRef<u32>,
-    /// What this one draws is added here.
-    pub visible: BufferRef<u32>,
 }
 
 /// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
@@ -113,9 +111,11 @@ impl Steps {
         Ok(self.view.write(&[all])?)
     }
 
-    /// Where blocks lie along the view.
-    pub fn measure(&self, f: &mut Frame, world: &World) {
-        f.fill("hzb/clear_reach", &self.reach, 0);
+    /// Where blocks lie along the view, and, if there is more than one range, between where they begin.
+    pub fn measure(&self, f: &mut Frame, world: &World, range_count: u32) {
+        if range_count > 1 {
+            f.fill("hzb/clear_reach", &self.reach, 0);
+        }
         let measure = hzb::MeasureBlocks {
             bounds: world.block_bounds(),
             spans: self.spans.all(),
@@ -201,7 +201,7 @@ impl Steps {
             object_meshes: world.object_meshes(),
             meshes: world.meshes(),
             commands: self.commands[number as usize].all(),
-            visible: step.visible,
+            visible: step.seen,
             small_indices: self.small_indices,
             constants: hzb::WriteBlocksConstants { kind_count },
         };
@@ -221,7 +221,7 @@ impl Steps {
             shown: self.shown.all(),
             views: self.shape.view(),
             drawn: commands,
-            visible: step.visible,
+            visible: step.seen,
         };
         if self.kinds > 0 {
             f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());

@@ -5,11 +5,11 @@ use crate::cli::BenchArgs;
 use crate::report::{self, Gallery};
 use crate::results::trace;
 use crate::results::{parts_table, stages_table, table, Results};
-use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, CaptureOrder, Seen};
+use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, Seen};
+use crate::run::capture::CaptureOrder;
 use crate::run::methods::parse_methods;
 use crate::run::session::{cache_folder, Session};
 use anyhow::{bail, Context, Result};
-use engine::Capture;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Runs the benchmark, writes its files and prints its table.
@@ -82,10 +82,7 @@ fn capture(arguments: &BenchArgs) -> Result<Option<CaptureOrder>> {
     if frame >= arguments.scene.frames as usize {
         bail!("--capture {frame}: the run has only {} frames, counted from 0", arguments.scene.frames);
     }
-    if arguments.no_metrics {
-        bail!("--capture needs the untimed pass: leave --no-metrics out");
-    }
-    Ok(Some(CaptureOrder { frame, folder: arguments.out.clone(), library: Capture::load()? }))
+    Ok(Some(CaptureOrder::new(frame, &arguments.out)?))
 }
 
 /// A progress bar on the terminal.

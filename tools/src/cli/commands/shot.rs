@@ -5,6 +5,7 @@ use crate::cli::{ShotArgs, Show};
 use crate::pictures::boxes_view;
 use crate::pictures::png_out::{DepthScale, Picture};
 use crate::pictures::warp_view::{self, Warped};
+use crate::run::capture::{self, CaptureOrder};
 use crate::run::methods::parse_methods;
 use crate::run::session::{cache_folder, Session};
 use crate::run::truth::RunTruth;
@@ -12,6 +13,7 @@ use crate::run::{fragment_counts, Contender, Watched};
 use anyhow::{bail, Context, Result};
 use culling::warp::{Settings, OPTIONS};
 use culling::{Options, TestedBoxes};
+use std::path::Path;
 
 /// Frames that a method runs before the one shown, so that it has a past.
 const LEAD_FRAMES: usize = 2;
@@ -31,24 +33,43 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
     if arguments.frame >= arguments.scene.frames as usize {
         bail!("--frame {}: the run has only {} frames, counted from 0", arguments.frame, arguments.scene.frames);
     }
+    let mut order = order(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
     let visible = match entry.id {
         "ref" => Some(RunTruth::visible_sets(&mut session, cache_folder().as_deref(), || ())?),
         _ => None,
     };
     let mut contender = Contender::new(&session, entry, options, &visible)?;
+    let label = contender.label();
     for frame in arguments.frame.saturating_sub(LEAD_FRAMES)..arguments.frame {
-        contender.timed(&mut session, frame)?;
+        let gpu = session.gpu.clone();
+        capture::around(&mut order, &gpu, (frame, &label), || contender.timed(&mut session, frame))?;
     }
-    let (picture, caption) = match warp_shown(arguments.view) {
-        Some(shown) => warp_picture(&mut session, &mut contender, arguments.frame, warp, shown)?,
-        None => picture(&mut session, &mut contender, arguments)?,
-    };
-    if let Some(folder) = arguments.out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder", folder.display()))?;
-    }
+    let gpu = session.gpu.clone();
+    let (picture, caption) =
+        capture::around(&mut order, &gpu, (arguments.frame, &label), || match warp_shown(arguments.view) {
+            Some(shown) => warp_picture(&mut session, &mut contender, arguments.frame, warp, shown),
+            None => picture(&mut session, &mut contender, arguments),
+        })?;
+    folder(arguments)?;
     picture.write(&arguments.out)?;
     say(&format!("{}{caption}", arguments.out.display()))
+}
+
+/// The folder of the picture, which is made if it is not there.
+fn folder(arguments: &ShotArgs) -> Result<&Path> {
+    let folder = arguments.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder", folder.display()))?;
+    Ok(folder)
+}
+
+fn order(arguments: &ShotArgs) -> Result<Option<CaptureOrder>> {
+    let Some(frame) = arguments.capture else { return Ok(None) };
+    let runs = arguments.frame.saturating_sub(LEAD_FRAMES)..=arguments.frame;
+    if !runs.contains(&frame) {
+        bail!("--capture {frame}: of --frame {} only frames {} to {} run", arguments.frame, runs.start(), runs.end());
+    }
+    Ok(Some(CaptureOrder::new(frame, folder(arguments)?)?))
 }
 
 /// The picture, and what to say of it behind the file's name.

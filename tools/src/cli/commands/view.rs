@@ -12,6 +12,7 @@ pub fn run(arguments: &ViewArgs) -> Result<()> {
         methods: parse_methods(&arguments.methods.method, &arguments.methods.sets())?,
         keys: arguments.keys.as_deref().map(keys::parse_steps).transpose()?,
         screenshot: arguments.screenshot.clone(),
+        capture: arguments.capture,
         out: arguments.out.clone(),
     })
 }

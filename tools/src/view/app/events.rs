@@ -69,7 +69,7 @@ impl ApplicationHandler for App {
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let Some(window) = &self.window else { return };
-        if self.out_of_sight && !self.is_scripted() {
+        if self.out_of_sight && !self.wish.is_scripted() {
             // Nobody sees it: the next event wakes us.
             self.last = None;
             event_loop.set_control_flow(ControlFlow::Wait);
