@@ -162,6 +162,11 @@ pub(crate) fn find(
         ("scalarBlockLayout", on(v12.scalar_block_layout), "every stage: buffers lie as their Rust structs do"),
         ("dynamicRendering", on(v13.dynamic_rendering), "every drawing and clear"),
         ("synchronization2", on(v13.synchronization2), "every barrier and submission"),
+        (
+            "shaderDemoteToHelperInvocation",
+            on(v13.shader_demote_to_helper_invocation),
+            "masked surfaces, whose fragments are discarded",
+        ),
         ("maintenance4", on(v13.maintenance4), "prefix sums, whose work group is one subgroup of the device's size"),
         ("subgroup arithmetic", adds, "prefix sums, which put lists in order"),
     ];

@@ -11,7 +11,7 @@ use harness::{gpu, laws, Lab, Random, Subject};
 use scenes::{Projection, Scene, Surface, Texture, Wrap};
 use shaders::translucent;
 use shaders::types::{DrawCommand, MeshRange};
-use sightline::metrics::Truth;
+use sightline::measures::metrics::Truth;
 use std::sync::Arc;
 
 const WALL: usize = 0;

@@ -1,6 +1,7 @@
 //! What a frame asks and draws, in the order in which the host decides it: runs of draws, runs of queries, and waits.
 
 use crate::boxes::BoxShape;
+use crate::world::Range;
 use crate::{Error, Options, Result, Setup, View, Work, World};
 use engine::{Buffer, Extra, Frame, IndexedIndirect, OcclusionQueries, Placement, Queried, Target};
 use shaders::types::{DrawCommand, TreeNode};
@@ -19,10 +20,10 @@ const MOST_STEPS: usize = 3_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Run {
     Nothing,
-    /// Objects that are drawn in the same way: those of this range.
-    Draws(usize),
+    /// Objects of one kind of primitive.
+    Draws(Option<Range>),
     /// Such objects, each counted by a query.
-    QueriedDraws(usize),
+    QueriedDraws(Option<Range>),
     /// Boxes, each counted by a query.
     Boxes,
 }
@@ -117,8 +118,8 @@ impl Asking {
         self.tested.clear();
         self.work = Work::default();
         let mut first = 0;
-        let range = |command: &DrawCommand| range_of(world, command.first_instance);
-        for run in self.drawn.chunk_by(|one, next| range(one) == range(next)) {
+        let kind = |command: &DrawCommand| kind_of(world, command.first_instance);
+        for run in self.drawn.chunk_by(|one, next| kind(one) == kind(next)) {
             self.draw_part(f, (world, view, target), first..first + run.len(), None);
             first += run.len();
             if f.recorded().len() > MOST_STEPS {
@@ -138,7 +139,7 @@ impl Asking {
         &self.tested
     }
 
-    /// Draws some of what was listed, all of one range.
+    /// Draws some of what was listed, all of one kind of primitive.
     fn draw_part(
         &self,
         f: &mut Frame,
@@ -146,9 +147,9 @@ impl Asking {
         part: std::ops::Range<usize>,
         first_query: Option<u32>,
     ) {
-        let range = &world.ranges()[range_of(world, self.drawn[part.start].first_instance)];
-        let draws = world.multi_draw(range, part_of(&self.commands, part.start, part.len()), None);
-        let draw = IndexedIndirect { max_draws: part.len() as u32, ..draws };
+        let Some(kind) = kind_of(world, self.drawn[part.start].first_instance) else { return };
+        let range = Range { count: part.len() as u32, ..kind };
+        let draw = world.multi_draw(&range, part_of(&self.commands, part.start, part.len()), None);
         match first_query {
             None => world.draw_indirect(f, draw, view, target),
             Some(first) => world.query_indirect(f, draw, Queried { queries: &self.queries, first }, view, target),
@@ -166,9 +167,10 @@ fn least_samples(options: &Options, counts: bool, name: &'static str) -> Result<
     Ok(least)
 }
 
-/// The range of an object.
-fn range_of(world: &World, object: u32) -> usize {
-    world.ranges().partition_point(|range| range.first + range.count <= object)
+/// How an object is drawn, as a range of none.
+fn kind_of(world: &World, object: u32) -> Option<Range> {
+    let range = world.ranges().iter().find(|range| (range.first..range.first + range.count).contains(&object));
+    range.map(|range| Range { first: 0, count: 0, ..*range })
 }
 
 fn part_of(commands: &Buffer<DrawCommand>, first: usize, count: usize) -> BufferRef<DrawCommand> {
@@ -188,7 +190,7 @@ pub(super) struct Recording<'a> {
 impl Recording<'_> {
     /// Draws an object.
     pub(super) fn draw(&mut self, object: u32) -> Result<()> {
-        self.go_on(Run::Draws(range_of(self.world, object)))?;
+        self.go_on(Run::Draws(kind_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         Ok(())
     }
@@ -196,7 +198,7 @@ impl Recording<'_> {
     /// Draws an object and asks how much of it passes the depth test.
     pub(super) fn draw_and_ask(&mut self, object: u32) -> Result<()> {
         self.make_room(0)?;
-        self.go_on(Run::QueriedDraws(range_of(self.world, object)))?;
+        self.go_on(Run::QueriedDraws(kind_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         self.on.pending += 1;
         self.on.work.queries += 1;

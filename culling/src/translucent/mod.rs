@@ -38,7 +38,7 @@ impl Tests {
         match (setup.options.method(), &setup.visible) {
             ("ref", Some(visible)) => Tests::Known(visible.clone()),
             ("none", _) => Tests::None,
-            ("frustum", _) => Tests::Frustum,
+            ("frustum" | "frustum-bvh", _) => Tests::Frustum,
             _ => Tests::Boxes,
         }
     }

@@ -3,7 +3,7 @@
 use super::{Range, View, World};
 use engine::{Frame, IndexedIndirect, Queried, Surface, Target};
 use shaders::types::DrawCommand;
-use shaders::{draw, BufferRef, GraphicsStage, Stage};
+use shaders::{draw, BufferRef, Stage};
 
 impl World {
     /// The multi-draw of commands for objects of a range: as many as `count` says, or all.
@@ -50,38 +50,16 @@ impl World {
     }
 
     pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
-        self.draw_or_query(f, (draw, None), view, target);
-    }
-
-    /// The same, each command counted by a query.
-    pub(crate) fn query_indirect(
-        &self,
-        f: &mut Frame,
-        draw: IndexedIndirect,
-        queried: Queried<'_>,
-        view: &View,
-        target: &Target,
-    ) {
-        self.draw_or_query(f, (draw, Some(queried)), view, target);
-    }
-
-    fn draw_or_query(
-        &self,
-        f: &mut Frame,
-        (draw, queried): (IndexedIndirect, Option<Queried<'_>>),
-        view: &View,
-        target: &Target,
-    ) {
         let (draw, target) = self.prepared(draw, target);
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
         if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            self.draw_counted(f, (draw, queried), view, &target);
+            self.draw_counted(f, draw, view, &target);
         } else if let Some(detail) = &self.detail {
-            detail.draw(f, (draw, queried), view, &target);
+            detail.draw(f, draw, view, &target);
         } else if target.item.is_some() {
-            record(f, draw::ObjectsAndItems { view: view.gpu() }, (draw, queried), &target);
+            f.draw(draw::ObjectsAndItems { view: view.gpu() }, draw, &target);
         } else {
-            record(f, draw::Objects { view: view.gpu() }, (draw, queried), &target);
+            f.draw(draw::Objects { view: view.gpu() }, draw, &target);
         }
     }
 
@@ -104,16 +82,31 @@ impl World {
         }
     }
 
-    fn draw_counted(
+    /// Draws objects, each command counted by a query.
+    pub(crate) fn query_indirect(
         &self,
         f: &mut Frame,
-        (draw, queried): (IndexedIndirect, Option<Queried<'_>>),
+        draw: IndexedIndirect,
+        queried: Queried<'_>,
         view: &View,
         target: &Target,
     ) {
+        let (draw, target) = self.prepared(draw, target);
+        if matches!(target.colour, Some((_, engine::Format::Heat))) {
+            f.query_objects(draw::Overdraw { view: view.gpu() }, draw, queried, &target);
+        } else if let Some(detail) = &self.detail {
+            detail.query(f, draw, queried, view, &target);
+        } else if target.item.is_some() {
+            f.query_objects(draw::ObjectsAndItems { view: view.gpu() }, draw, queried, &target);
+        } else {
+            f.query_objects(draw::Objects { view: view.gpu() }, draw, queried, &target);
+        }
+    }
+
+    fn draw_counted(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
         match &self.detail {
-            Some(detail) if draw.surface == Surface::Masked => detail.draw_counted(f, (draw, queried), view, target),
-            _ => record(f, draw::Overdraw { view: view.gpu() }, (draw, queried), target),
+            Some(detail) if draw.surface == Surface::Masked => detail.draw_counted(f, draw, view, target),
+            _ => f.draw(draw::Overdraw { view: view.gpu() }, draw, target),
         }
     }
 
@@ -125,18 +118,5 @@ impl World {
             Surface::Opaque | Surface::Masked => *target,
         };
         (IndexedIndirect { vertices: self.vertices.all().into(), ..draw }, target)
-    }
-}
-
-/// Draws with a stage; where queries are given, each command is counted by one.
-pub(super) fn record<S: GraphicsStage>(
-    f: &mut Frame,
-    stage: S,
-    (draw, queried): (IndexedIndirect, Option<Queried<'_>>),
-    target: &Target,
-) {
-    match queried {
-        None => f.draw(stage, draw, target),
-        Some(queried) => f.query_objects(stage, draw, queried, target),
     }
 }

@@ -352,9 +352,11 @@ impl World {
         self.host.translucent_kinds[object as usize - self.host.solid]
     }
 
-    /// A command for every object; for tests and the ideal method.
+    /// A command for every object that culling methods see.
     pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
-        Ok(self.all_commands.read()?)
+        let mut commands = self.all_commands.read()?;
+        commands.truncate(self.len());
+        Ok(commands)
     }
 }
 
