@@ -1,7 +1,6 @@
 //! The laws of `chc++`, and what it is for: fewer queries and state changes than `chc`.
 
 harness::exact_method_tests!("chc++");
-harness::skipping_method_tests!("chc++");
 
 #[test]
 fn what_a_wall_hides_is_culled() {
@@ -55,4 +54,13 @@ fn it_asks_and_changes_state_less_than_chc() {
         assert!(chcpp[1] < chc[1], "{run:?}: {} state changes, chc {}", chcpp[1], chc[1]);
         assert!(nohc[0] <= chc[0], "{run:?}: nohc asks {} times, chc {}", nohc[0], chc[0]);
     }
+}
+
+#[test]
+#[should_panic(expected = "made for another world")]
+fn a_world_of_another_length_is_refused() {
+    let gpu = gpu();
+    let (long, short) = (worlds::walled(200), worlds::walled(20));
+    let mut method = harness::Lab::new(&gpu, &short).make(&Subject::named("chc++"), &Default::default());
+    harness::Lab::new(&gpu, &long).take(&mut *method, &long.shots[0], 0);
 }

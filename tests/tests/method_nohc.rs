@@ -1,7 +1,6 @@
 //! The laws of `nohc`, and its model of costs.
 
 harness::exact_method_tests!("nohc");
-harness::skipping_method_tests!("nohc");
 
 /// What is measured has an order that no device turns round: costs are there, and more of anything costs no less.
 #[test]
@@ -21,4 +20,13 @@ fn it_prints_its_constants() {
     let lab = harness::Lab::new(&gpu, &worlds::walled(20));
     let lines = lab.make(&Subject::named("nohc"), &Default::default()).choices();
     assert!(lines[0].contains("us") && lines[0].contains("a query") && lines[0].contains("a triangle"), "{lines:?}");
+}
+
+#[test]
+#[should_panic(expected = "made for another world")]
+fn a_world_of_another_length_is_refused() {
+    let gpu = gpu();
+    let (long, short) = (worlds::walled(200), worlds::walled(20));
+    let mut method = harness::Lab::new(&gpu, &short).make(&Subject::named("nohc"), &Default::default());
+    harness::Lab::new(&gpu, &long).take(&mut *method, &long.shots[0], 0);
 }

@@ -17,7 +17,7 @@ pub const OPTIONS: &[OptionInfo] =
     &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
 
 /// Frames of an unchanged view after which what is drawn is drawn in the same order: what is visible has then been found so.
-pub(super) const SETTLED_AFTER: u32 = 4;
+const SETTLED_AFTER: u32 = 4;
 
 struct Chc {
     on: Asking,

@@ -6,12 +6,14 @@
 //!   come due at once; then they wait in the *v-queue*. The paper asks about them while it waits for answers. Here waiting ends
 //!   with a submission, which they would only make longer: they are asked about at the end of the frame, and answered in the next.
 //! - A node is asked about by the boxes of the nodes below it, as far as those have at most `s_max` times its surface.
+//!
+//! No frame is left out before a still camera: visible leaves come due while nothing else changes, and which frames ran decides what the
+//! next view begins with.
 
 use super::hierarchy::{Hierarchy, Place};
 use super::multi;
 use super::recording::{Asking, Recording};
 use super::{BVH_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION};
-use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 use scenes::bvh::Bvh;
@@ -19,7 +21,6 @@ use scenes::Aabb;
 
 /// The parameters of the paper, at its values.
 pub const OPTIONS: &[OptionInfo] = &[
-    crate::world::SKIP_OPTION,
     crate::world::DETAIL_OPTION,
     MIN_PIXELS_OPTION,
     WINDOW_OPTION,
@@ -62,7 +63,6 @@ struct ChcPlusPlus {
     /// Leaves that the last frame asked about at its end.
     left: Vec<u32>,
     window: usize,
-    still: Still,
 }
 
 /// Makes the method.
@@ -83,7 +83,6 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         },
         left: Vec::new(),
         window: options.number("window") as usize,
-        still: Still::new(options).settled_after(super::chc::SETTLED_AFTER),
     }))
 }
 
@@ -91,10 +90,6 @@ impl Method for ChcPlusPlus {
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         world.update(f);
         f.clear(target);
-        if self.still.holds(world, view) {
-            f.skip("queries/test_nodes", Still::REASON);
-            return self.on.draw_again(f, world, view, target);
-        }
         self.check_last_answers()?; // 1. leaves that the last frame asked about
         let ChcPlusPlus { on, walk, window, left, .. } = self;
         walk.nodes.begin(world, view)?;
@@ -130,7 +125,6 @@ impl Method for ChcPlusPlus {
     }
 
     fn forget(&mut self) -> Result<()> {
-        self.still.forget();
         self.walk.nodes.forget();
         self.left.clear();
         self.on.left_answers()?;

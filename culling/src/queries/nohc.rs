@@ -5,6 +5,9 @@
 //!   one thing from then on. The chance p that it is still hidden is the persistence of visibility that CHC++ found (Guthe et al.
 //!   have one of their own from the pixels that are covered, which a host that reads no picture back does not know).
 //! - Of a visible leaf, or of what is taken for one: query once C(query) < (1 - 0.99^k) C(drawing it), k frames after the last.
+//!
+//! No frame is left out before a still camera: what is visible comes due for a query while nothing else changes, and which frames
+//! ran decides what the next view begins with.
 
 use super::chc;
 use super::costs::Costs;
@@ -16,8 +19,7 @@ use crate::{Method, OptionInfo, Result, Setup, World};
 use shaders::types::CullView;
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] =
-    &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
+pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
 
 /// The chance that what is visible is so in the next frame: the limit of p(t).
 const STAYS_VISIBLE: f64 = 0.99;
