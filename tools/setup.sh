@@ -12,7 +12,7 @@ Usage: tools/setup.sh [--windows] [--captures] [--shaders] [--swiftshader]
 Checks for what Sightline needs and installs what is missing (Debian and Ubuntu; elsewhere it says what to install).
 
   --windows   also a virtual display for the tests of `sightline view` (xvfb, xauth, imagemagick)
-  --captures  also RenderDoc, for `--capture FRAME`
+  --captures  also RenderDoc, for `--capture FRAME` and its check (to look at captures: renderdoc)
   --shaders   also what `cargo shaders` builds its compiler with (cmake, ninja, g++, git, python3)
   --swiftshader
               also SwiftShader, a second CPU device to test on, which comes with Debian's chromium (290 MB)
@@ -31,7 +31,7 @@ packages=(mesa-vulkan-drivers libvulkan1 vulkan-validationlayers assimp-testmode
 for argument in "$@"; do
     case $argument in
         --windows) packages+=(xvfb xauth imagemagick) ;;
-        --captures) packages+=(renderdoc) ;;
+        --captures) packages+=(librenderdoc python3-renderdoc) ;;
         --shaders) packages+=(cmake ninja-build g++ git python3) ;;
         --swiftshader) packages+=(chromium) ;;
         -h | --help)

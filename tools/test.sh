@@ -24,8 +24,8 @@ drive_with() {
 
 case ${SIGHTLINE_TEST_DEVICE-} in
     '')
-        # The tests of `sightline view` open windows on a virtual display.
-        "$tools/setup.sh" --windows
+        # The tests of `sightline view` open windows on a virtual display, those of `--capture` need RenderDoc.
+        "$tools/setup.sh" --windows --captures
         drive_with /usr/share/vulkan/icd.d/lvp_icd.*.json /usr/local/share/vulkan/icd.d/lvp_icd.*.json || {
             echo "test: lavapipe is not installed (no /usr/share/vulkan/icd.d/lvp_icd.*.json); install Mesa's Vulkan drivers," \
                 "or set SIGHTLINE_TEST_DEVICE=any to test on this machine's own device" >&2
@@ -33,14 +33,14 @@ case ${SIGHTLINE_TEST_DEVICE-} in
         }
         ;;
     swiftshader)
-        "$tools/setup.sh" --windows --swiftshader
+        "$tools/setup.sh" --windows --captures --swiftshader
         drive_with /usr/lib/chromium/vk_swiftshader_icd.json /usr/lib*/chromium*/vk_swiftshader_icd.json || {
             echo "test: SwiftShader is not installed (no /usr/lib/chromium/vk_swiftshader_icd.json): Debian's package" \
                 "chromium has it" >&2
             exit 1
         }
         ;;
-    *) "$tools/setup.sh" --windows ;;
+    *) "$tools/setup.sh" --windows --captures ;;
 esac
 
 cd "$tools/.."

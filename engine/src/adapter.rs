@@ -71,6 +71,17 @@ impl fmt::Display for AdapterInfo {
     }
 }
 
+/// Every Vulkan device of this machine, best first, without opening any.
+pub fn adapters() -> Result<Vec<AdapterInfo>> {
+    let instance = Instance::new(false, false)?;
+    Ok(list(&instance, &[])?.into_iter().map(|(_, info)| info).collect())
+}
+
+/// One line a device: index, name, kind, what it lacks.
+pub fn device_lines() -> Result<Vec<String>> {
+    Ok(adapters()?.iter().enumerate().map(|(index, info)| format!("{index}: {info}")).collect())
+}
+
 /// All devices, best first: discrete, integrated, virtual, CPU; within a sort in the driver's order.
 pub(crate) fn list(instance: &Instance, without: &[String]) -> Result<Vec<(vk::PhysicalDevice, AdapterInfo)>> {
     // SAFETY: the instance is alive.
@@ -114,7 +125,7 @@ pub(crate) fn choose(
     if !info.missing.is_empty() {
         return Err(Error::MissingFeatures { device: info.name, missing: info.missing.join(", ") });
     }
-    features::check_names(without, &info)?;
+    features::check_names(without, &info.needed, &info.optional)?;
     Ok((device, info))
 }
 

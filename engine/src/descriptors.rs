@@ -4,7 +4,7 @@
 
 use crate::error::Named;
 use crate::features::{Extra, Extras};
-use crate::gpu::lock;
+use crate::lock::lock;
 use crate::pipeline::{descriptor_type, Pipeline};
 use crate::recorder::{Op, Recorded};
 use crate::Result;
@@ -34,7 +34,8 @@ struct Room {
     descriptors: [u32; KINDS.len()],
 }
 
-const KINDS: [BindingKind; 3] = [BindingKind::StorageBuffer, BindingKind::SampledImage, BindingKind::StorageImage];
+const KINDS: [BindingKind; 4] =
+    [BindingKind::StorageBuffer, BindingKind::SampledImage, BindingKind::GatheredImage, BindingKind::StorageImage];
 
 impl Room {
     /// What some stages take, one set each.
@@ -66,15 +67,6 @@ impl Descriptors {
             Descriptors::Pushed(ash::khr::push_descriptor::Device::new(instance, device))
         } else {
             Descriptors::Pooled(Mutex::default())
-        }
-    }
-
-    /// How layouts of sets are made.
-    pub(crate) fn layout_flags(extras: Extras) -> vk::DescriptorSetLayoutCreateFlags {
-        if extras.has(Extra::PushDescriptor) {
-            vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
-        } else {
-            vk::DescriptorSetLayoutCreateFlags::empty()
         }
     }
 

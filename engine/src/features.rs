@@ -1,6 +1,6 @@
 //! What the engine asks of a device: what every device must have, and why; and what it can do without, and how.
 
-use crate::{AdapterInfo, Error, Result};
+use crate::{Error, Result};
 use ash::vk;
 
 /// Something a device has or lacks, by the name that `--without` takes.
@@ -162,6 +162,11 @@ pub(crate) fn find(
         ("scalarBlockLayout", on(v12.scalar_block_layout), "every stage: buffers lie as their Rust structs do"),
         ("dynamicRendering", on(v13.dynamic_rendering), "every drawing and clear"),
         ("synchronization2", on(v13.synchronization2), "every barrier and submission"),
+        (
+            "shaderDemoteToHelperInvocation",
+            on(v13.shader_demote_to_helper_invocation),
+            "masked surfaces, whose fragments are discarded",
+        ),
         ("maintenance4", on(v13.maintenance4), "prefix sums, whose work group is one subgroup of the device's size"),
         ("subgroup arithmetic", adds, "prefix sums, which put lists in order"),
     ];
@@ -208,13 +213,13 @@ const MAPPED: vk::MemoryPropertyFlags = vk::MemoryPropertyFlags::from_raw(
 );
 
 /// An error if one of the names is that of nothing that can be turned off.
-pub(crate) fn check_names(without: &[String], info: &AdapterInfo) -> Result<()> {
-    let known = info.optional.iter().chain(&info.needed).map(|feature| feature.name);
+pub(crate) fn check_names(without: &[String], needed: &[Feature], optional: &[Feature]) -> Result<()> {
+    let known = optional.iter().chain(needed).map(|feature| feature.name);
     match without.iter().find(|name| !known.clone().any(|known| known.eq_ignore_ascii_case(name))) {
         None => Ok(()),
         Some(wanted) => Err(Error::NoSuchFeature {
             wanted: wanted.clone(),
-            known: info.optional.iter().map(|feature| feature.name).collect::<Vec<_>>().join(", "),
+            known: optional.iter().map(|feature| feature.name).collect::<Vec<_>>().join(", "),
         }),
     }
 }

@@ -3,10 +3,10 @@
 use crate::depth::DepthFormat;
 use crate::features::Extra;
 use crate::gpu::{Gpu, Vulkan};
-use crate::image::{Format, Target};
 use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
+use crate::target::{Format, Target};
 use crate::timers::{self, Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
@@ -69,6 +69,7 @@ pub struct FrameReport {
 pub struct Frame {
     gpu: Gpu,
     recorder: Recorder,
+    title: String,
     report: FrameReport,
     queries: Option<Queries>,
     count_statistics: bool,
@@ -86,6 +87,7 @@ impl Frame {
         Frame {
             gpu: gpu.clone(),
             recorder: Recorder::default(),
+            title: String::new(),
             report: FrameReport::default(),
             queries: None,
             count_statistics: false,
@@ -107,6 +109,11 @@ impl Frame {
     /// Measures the frame alone: no timestamp, and no barrier for its sake, stands between stages. The report then has no stages.
     pub fn without_stage_times(&mut self) {
         self.timer = None;
+    }
+
+    /// Says what the frame is of, such as the method that draws it: a label around its stages in captures.
+    pub fn title(&mut self, title: &str) {
+        self.title = title.to_owned();
     }
 
     /// Names the part of the frame that the following stages belong to ("early", "late"); "" for none.
@@ -271,7 +278,7 @@ impl Frame {
         }
         let queries = match self.queries.take() {
             Some(queries) => queries,
-            None => vulkan.queries.take(vulkan)?,
+            None => vulkan.queries.take(&vulkan.device, vulkan.info.extras, &vulkan.names)?,
         };
         let result = self.run(vulkan, &queries, &ops);
         self.queries = Some(queries);
@@ -280,6 +287,7 @@ impl Frame {
 
     fn run(&mut self, vulkan: &Vulkan, queries: &Queries, ops: &[Recorded]) -> Result<()> {
         let how = lower::How {
+            title: &self.title,
             timer: self.timer,
             statistics: if self.count_statistics { queries.statistics } else { None },
             timestamps: queries.timestamps,
@@ -294,13 +302,15 @@ impl Frame {
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
         if let (Some(_), Some(pool)) = (self.timer, queries.timestamps) {
-            self.report.stages.extend(timers::stage_times(vulkan, pool, ops)?);
+            let times = timers::stage_ms(&vulkan.device, &vulkan.info, pool, ops.len())?;
+            let labels = ops.iter().map(|recorded| recorded.label.clone());
+            self.report.stages.extend(labels.zip(times).map(|(label, ms)| StageTime { label, ms }));
         }
         if let Some(pool) = how.statistics {
-            let counted = timers::statistics(vulkan, pool)?;
+            let [primitives, fragments] = timers::statistics(&vulkan.device, pool)?;
             let sum = self.report.statistics.get_or_insert_default();
-            sum.primitives += counted.primitives;
-            sum.fragments += counted.fragments;
+            sum.primitives += primitives;
+            sum.fragments += fragments;
         }
         Ok(())
     }
@@ -350,6 +360,11 @@ impl Drop for Frame {
 }
 
 impl Gpu {
+    /// Starts recording a frame.
+    pub fn frame(&self) -> Frame {
+        Frame::new(self)
+    }
+
     /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
     pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
         match bound {

@@ -6,17 +6,20 @@ use crate::descriptors::Descriptors;
 use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::instance::Instance;
-use crate::memory::{Retired, RetiredList};
+use crate::lock::lock;
+use crate::names::Names;
 use crate::pipeline::Pipelines;
-use crate::timers::{self, QueryStore, TimerMode};
-use crate::{pipeline_cache, Error, Frame, Message, Result};
+use crate::retired::RetiredList;
+use crate::timers::{QueryStore, TimerMode};
+use crate::{Error, Message, Result};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use gpu_allocator::MemoryLocation;
 use shaders::ResourceId;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +44,7 @@ pub struct GpuOptions {
 
 /// An opened Vulkan device, or a recorder without one. Cheap to clone.
 ///
-/// Frames are recorded and run one at a time: two threads must not be between [`Gpu::frame`] and [`Frame::finish`] at once
+/// Frames are recorded and run one at a time: two threads must not be between [`Gpu::frame`] and [`crate::Frame::finish`] at once
 /// (they share one command pool), nor read or write buffers meanwhile.
 #[derive(Clone)]
 pub struct Gpu(pub(crate) Arc<Inner>);
@@ -56,7 +59,7 @@ pub(crate) struct Inner {
 pub(crate) struct Vulkan {
     pub(crate) device: ash::Device,
     pub(crate) descriptors: Descriptors,
-    pub(crate) labels: Option<ash::ext::debug_utils::Device>,
+    pub(crate) names: Names,
     pub(crate) queue: Mutex<vk::Queue>,
     pub(crate) pool: Mutex<vk::CommandPool>,
     pub(crate) allocator: ManuallyDrop<Mutex<Allocator>>,
@@ -70,19 +73,14 @@ pub(crate) struct Vulkan {
     pub(crate) physical: vk::PhysicalDevice,
     pub(crate) family: u32,
     pub(crate) windows: bool,
-    timer: OnceLock<TimerMode>,
+    pub(crate) timer: OnceLock<TimerMode>,
     pub(crate) instance: Instance,
 }
 
-/// A lock that a panic elsewhere does not take away: the data is only ever replaced whole.
-pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
 impl Gpu {
-    /// Opens a device.
-    pub fn open(options: &GpuOptions) -> Result<Self> {
-        let instance = Instance::new(options)?;
+    /// Opens a device whose stages are not timed yet: [`Gpu::open`] decides how.
+    pub(crate) fn open_untimed(options: &GpuOptions) -> Result<Self> {
+        let instance = Instance::new(options.validation, options.windows)?;
         let (physical, info) = adapter::choose(&instance, options.device.as_deref(), &options.without)?;
         adapter::check_depth(&instance, physical, &info, options.depth)?;
         if options.windows {
@@ -94,21 +92,12 @@ impl Gpu {
         })?;
         let device = create_device(&instance.raw, physical, family, info.extras, options.windows)?;
         let vulkan = Vulkan::new(instance, physical, device, family, info, options)?;
-        let gpu = Gpu(Arc::new(Inner {
+        Ok(Gpu(Arc::new(Inner {
             vulkan: Some(vulkan),
             next_id: AtomicU32::new(0),
             names: Mutex::default(),
             barrier_every_stage: options.barrier_every_stage,
-        }));
-        let mode = match options.timer {
-            _ if !gpu.has(Extra::Timestamps) => TimerMode::Off,
-            Some(mode) => mode,
-            None => timers::self_check(&gpu)?,
-        };
-        if let Some(vulkan) = &gpu.0.vulkan {
-            vulkan.timer.get_or_init(|| mode);
-        }
-        Ok(gpu)
+        })))
     }
 
     /// An engine without a device: frames are recorded and can be read as text, but not run.
@@ -157,11 +146,6 @@ impl Gpu {
         bytes as f64 / (1024.0 * 1024.0)
     }
 
-    /// Starts recording a frame.
-    pub fn frame(&self) -> Frame {
-        Frame::new(self)
-    }
-
     /// What the validation layer said since this was last asked.
     pub fn take_messages(&self) -> Vec<Message> {
         self.0.vulkan.as_ref().map(|vulkan| vulkan.instance.messages.take()).unwrap_or_default()
@@ -175,7 +159,7 @@ impl Gpu {
     /// Writes the pipeline cache to disk, if it has a place there. Failing to is no error: it is only a cache.
     pub fn save_pipeline_cache(&self) {
         if let Some(vulkan) = &self.0.vulkan {
-            pipeline_cache::save(&vulkan.device, &vulkan.pipelines);
+            vulkan.pipelines.save(&vulkan.device);
         }
     }
 
@@ -214,6 +198,7 @@ fn create_device(
         .dynamic_rendering(true)
         .synchronization2(true)
         .maintenance4(true)
+        .shader_demote_to_helper_invocation(true)
         .subgroup_size_control(extras.has(Extra::SubgroupSizeControl))
         .compute_full_subgroups(extras.has(Extra::SubgroupSizeControl));
     let swapchain = windows.then_some(ash::khr::swapchain::NAME.as_ptr());
@@ -244,14 +229,17 @@ impl Vulkan {
             unsafe { instance.raw.get_device_proc_addr(device.handle(), c"vkCmdBeginDebugUtilsLabelEXT".as_ptr()) }
                 .is_some();
         let has_labels = has_labels && info.extras.has(Extra::DebugUtils);
-        let labels = has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device));
+        let names = Names(has_labels.then(|| ash::ext::debug_utils::Device::new(&instance.raw, &device)));
+        names.give(device.handle(), "device");
         // SAFETY: the family was asked for when the device was made.
         let queue = unsafe { device.get_device_queue(family, 0) };
+        names.give(queue, "queue");
         let pool_info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(family)
             .flags(vk::CommandPoolCreateFlags::TRANSIENT);
         // SAFETY: the device is alive.
         let pool = unsafe { device.create_command_pool(&pool_info, None) }.named("vkCreateCommandPool")?;
+        names.give(pool, "commands");
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.raw.clone(),
             device: device.clone(),
@@ -261,10 +249,10 @@ impl Vulkan {
             allocation_sizes: Default::default(),
         })
         .map_err(|source| Error::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, source })?;
-        let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref())?;
+        let pipelines = Pipelines::new(&device, &info, options.cache_dir.as_deref(), &names)?;
         Ok(Vulkan {
             descriptors,
-            labels,
+            names,
             queue: Mutex::new(queue),
             pool: Mutex::new(pool),
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
@@ -288,22 +276,47 @@ impl Vulkan {
         self.info.extras.has(extra)
     }
 
+    /// Device memory for a resource.
+    pub(crate) fn allocate(
+        &self,
+        name: &str,
+        requirements: vk::MemoryRequirements,
+        location: MemoryLocation,
+        linear: bool,
+    ) -> Result<Allocation> {
+        let description = AllocationCreateDesc {
+            name,
+            requirements,
+            location,
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
+        let allocation = lock(&self.allocator).allocate(&description).map_err(|source| Error::OutOfMemory {
+            what: name.to_owned(),
+            mib: requirements.size as f64 / (1024.0 * 1024.0),
+            source,
+        })?;
+        self.memory_bytes.fetch_add(allocation.size(), Ordering::Relaxed);
+        Ok(allocation)
+    }
+
     /// Frees what was dropped, if no recorded frame can still name it.
     pub(crate) fn bury(&self) {
         if self.frames_alive.load(Ordering::Acquire) == 0 {
-            let retired: Vec<Retired> = self.retired.take();
-            for one in retired {
-                one.free(self);
-            }
+            self.free_retired();
+        }
+    }
+
+    fn free_retired(&self) {
+        for one in self.retired.take() {
+            let bytes = one.free(&self.device, &self.allocator);
+            self.memory_bytes.fetch_sub(bytes, Ordering::Relaxed);
         }
     }
 
     /// Gives a Vulkan object the name that captures and messages show.
     pub(crate) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
-        let (Some(labels), Ok(name)) = (&self.labels, std::ffi::CString::new(name)) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
-        // SAFETY: the handle was just made from this device. A failing name is no reason to stop.
-        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+        self.names.give(handle, name);
     }
 }
 
@@ -313,10 +326,8 @@ impl Drop for Vulkan {
         unsafe {
             let _ = self.device.device_wait_idle();
         }
-        for one in self.retired.take() {
-            one.free(self);
-        }
-        pipeline_cache::save(&self.device, &self.pipelines);
+        self.free_retired();
+        self.pipelines.save(&self.device);
         self.pipelines.destroy(&self.device);
         self.queries.destroy(&self.device);
         self.descriptors.destroy(&self.device);

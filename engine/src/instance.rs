@@ -2,7 +2,7 @@
 
 use crate::error::Named;
 use crate::messages::{callback, Messages};
-use crate::{adapter, AdapterInfo, Error, GpuOptions, Result};
+use crate::{Error, Result};
 use ash::vk;
 use std::ffi::{c_void, CStr};
 use std::sync::Arc;
@@ -29,20 +29,20 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
-    pub(crate) fn new(options: &GpuOptions) -> Result<Self> {
+    pub(crate) fn new(validation: bool, windows: bool) -> Result<Self> {
         // SAFETY: loading the system's Vulkan loader runs its initialisers; there is no way around trusting it.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoLoader(error.to_string()))?;
         // SAFETY: a query without preconditions.
         let layers =
             unsafe { entry.enumerate_instance_layer_properties() }.named("vkEnumerateInstanceLayerProperties")?;
         let has_layer = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION_LAYER));
-        if options.validation && !has_layer {
+        if validation && !has_layer {
             return Err(Error::NoValidation);
         }
         let messages = Arc::new(Messages::default());
-        let raw = create(&entry, options)?;
-        let messenger = if options.validation { Some(create_messenger(&entry, &raw, &messages)?) } else { None };
-        Ok(Instance { raw, messages, validating: options.validation, messenger, entry })
+        let raw = create(&entry, validation, windows)?;
+        let messenger = if validation { Some(create_messenger(&entry, &raw, &messages)?) } else { None };
+        Ok(Instance { raw, messages, validating: validation, messenger, entry })
     }
 }
 
@@ -58,8 +58,7 @@ impl Drop for Instance {
     }
 }
 
-fn create(entry: &ash::Entry, options: &GpuOptions) -> Result<ash::Instance> {
-    let validation = options.validation;
+fn create(entry: &ash::Entry, validation: bool, windows: bool) -> Result<ash::Instance> {
     let application = vk::ApplicationInfo::default()
         .application_name(c"sightline")
         .engine_name(c"sightline")
@@ -73,7 +72,7 @@ fn create(entry: &ash::Entry, options: &GpuOptions) -> Result<ash::Instance> {
     if validation || available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(labels)) {
         extensions.push(labels.as_ptr());
     }
-    if options.windows {
+    if windows {
         // All kinds of windows that the loader knows: which one it will be is not known yet.
         let known = |name: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name));
         extensions.extend(SURFACES.iter().filter(|name| known(name)).map(|name| name.as_ptr()));
@@ -107,15 +106,4 @@ fn create_messenger(
     let messenger =
         unsafe { extension.create_debug_utils_messenger(&info, None) }.named("vkCreateDebugUtilsMessengerEXT")?;
     Ok((extension, messenger))
-}
-
-/// Every Vulkan device of this machine, best first, without opening any.
-pub fn adapters() -> Result<Vec<AdapterInfo>> {
-    let instance = Instance::new(&GpuOptions::default())?;
-    Ok(adapter::list(&instance, &[])?.into_iter().map(|(_, info)| info).collect())
-}
-
-/// One line a device: index, name, kind, what it lacks.
-pub fn device_lines() -> Result<Vec<String>> {
-    Ok(adapters()?.iter().enumerate().map(|(index, info)| format!("{index}: {info}")).collect())
 }

@@ -3,9 +3,9 @@
 use crate::barriers::{Barrier, Point};
 use crate::features::Extra;
 use crate::gpu::Vulkan;
-use crate::image::Target;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
-use crate::recorder::{IndexedIndirect, Op, Recorded};
+use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
+use crate::target::Target;
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
 use crate::{Error, Result};
@@ -19,7 +19,9 @@ mod queried;
 const COMMAND_BYTES: u32 = 20;
 
 /// How a submission is run.
-pub(crate) struct How {
+pub(crate) struct How<'a> {
+    /// What all of it is labelled with; nothing where it is empty.
+    pub(crate) title: &'a str,
     /// None: stages are not timed.
     pub(crate) timer: Option<TimerMode>,
     pub(crate) statistics: Option<vk::QueryPool>,
@@ -38,7 +40,7 @@ struct Recording<'a> {
     commands: vk::CommandBuffer,
 }
 
-pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowered> {
+pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<Lowered> {
     let stamps = ops.len() as u32 + 1;
     if stamps > MAX_TIMESTAMPS {
         return Err(Error::TooLarge {
@@ -51,7 +53,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
     }
     assert_counts_do_not_lapse(ops);
     vulkan.descriptors.begin(&vulkan.device, ops)?;
-    let commands = vulkan.begin_commands()?;
+    let commands = vulkan.begin_commands("frame")?;
     let recording = Recording { vulkan, commands };
     let device = &vulkan.device;
     let pools = [(how.timestamps, stamps), (how.statistics, 1)];
@@ -69,6 +71,9 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
         // SAFETY: the query was reset above.
         unsafe { device.cmd_begin_query(commands, pool, 0, vk::QueryControlFlags::empty()) };
     }
+    if !how.title.is_empty() {
+        recording.label(how.title);
+    }
     recording.stamp(how, 0);
     for (index, recorded) in ops.iter().enumerate() {
         recording.label(&recorded.label);
@@ -79,6 +84,9 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How) -> Result<Lowe
         }
         recording.op(&recorded.op)?;
         recording.stamp(how, index as u32 + 1);
+        recording.end_label();
+    }
+    if !how.title.is_empty() {
         recording.end_label();
     }
     if let Some(pool) = how.statistics {
@@ -105,7 +113,7 @@ fn assert_counts_do_not_lapse(ops: &[Recorded]) {
 }
 
 impl Recording<'_> {
-    fn stamp(&self, how: &How, index: u32) {
+    fn stamp(&self, how: &How<'_>, index: u32) {
         let (Some(timer), Some(pool)) = (how.timer, how.timestamps) else { return };
         let device = &self.vulkan.device;
         // SAFETY: `index` is within the pool: `lower` checked it.
@@ -116,7 +124,7 @@ impl Recording<'_> {
     }
 
     fn label(&self, label: &str) {
-        let (Some(labels), Ok(name)) = (&self.vulkan.labels, std::ffi::CString::new(label)) else { return };
+        let (Some(labels), Ok(name)) = (&self.vulkan.names.0, std::ffi::CString::new(label)) else { return };
         // SAFETY: the name lives through the call; every label is ended by `end_label`.
         unsafe {
             labels.cmd_begin_debug_utils_label(self.commands, &vk::DebugUtilsLabelEXT::default().label_name(&name))
@@ -124,7 +132,7 @@ impl Recording<'_> {
     }
 
     fn end_label(&self) {
-        if let Some(labels) = &self.vulkan.labels {
+        if let Some(labels) = &self.vulkan.names.0 {
             // SAFETY: a label is open.
             unsafe { labels.cmd_end_debug_utils_label(self.commands) };
         }
@@ -231,9 +239,11 @@ impl Recording<'_> {
                 colour,
                 item: target.item.is_some(),
                 depth: self.vulkan.depth,
-                depth_write: !target.depth_read_only,
+                depth_write: !target.depth_read_only && draw.surface != Surface::Translucent,
                 strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
+                faces: draw.faces,
+                blended: draw.surface == Surface::Translucent,
             }),
         )?;
         let device = &self.vulkan.device;

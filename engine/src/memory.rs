@@ -2,16 +2,15 @@
 
 use crate::error::Named;
 use crate::features::Extra;
-use crate::gpu::{lock, Gpu, Vulkan};
+use crate::gpu::{Gpu, Vulkan};
+use crate::retired::Retired;
 use crate::{Error, Result};
 use ash::vk;
 use bytemuck::Pod;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::Allocation;
 use gpu_allocator::MemoryLocation;
 use shaders::{BufferRef, ResourceId};
 use std::marker::PhantomData;
-use std::sync::atomic::Ordering;
-use std::sync::Mutex;
 use vk::Handle;
 
 /// What a buffer is for, which decides where it lies.
@@ -202,31 +201,6 @@ fn create(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Resu
     }
 }
 
-impl Vulkan {
-    pub(crate) fn allocate(
-        &self,
-        name: &str,
-        requirements: vk::MemoryRequirements,
-        location: MemoryLocation,
-        linear: bool,
-    ) -> Result<Allocation> {
-        let description = AllocationCreateDesc {
-            name,
-            requirements,
-            location,
-            linear,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        };
-        let allocation = lock(&self.allocator).allocate(&description).map_err(|source| Error::OutOfMemory {
-            what: name.to_owned(),
-            mib: requirements.size as f64 / (1024.0 * 1024.0),
-            source,
-        })?;
-        self.memory_bytes.fetch_add(allocation.size(), Ordering::Relaxed);
-        Ok(allocation)
-    }
-}
-
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
@@ -238,42 +212,5 @@ impl<T> Drop for Buffer<T> {
             });
             vulkan.bury();
         }
-    }
-}
-
-/// What was dropped but may still be named by a recorded frame.
-pub(crate) struct Retired {
-    pub(crate) buffer: vk::Buffer,
-    pub(crate) image: vk::Image,
-    pub(crate) view: vk::ImageView,
-    pub(crate) allocation: Allocation,
-}
-
-impl Retired {
-    pub(crate) fn free(self, vulkan: &Vulkan) {
-        // SAFETY: its owner is gone, no frame is alive, and the device is idle between frames. Null handles are ignored.
-        unsafe {
-            vulkan.device.destroy_image_view(self.view, None);
-            vulkan.device.destroy_image(self.image, None);
-            vulkan.device.destroy_buffer(self.buffer, None);
-        }
-        vulkan.memory_bytes.fetch_sub(self.allocation.size(), Ordering::Relaxed);
-        if let Err(error) = lock(&vulkan.allocator).free(self.allocation) {
-            tracing::warn!(%error, "freeing device memory");
-        }
-    }
-}
-
-/// The dropped resources that wait to be freed.
-#[derive(Default)]
-pub(crate) struct RetiredList(Mutex<Vec<Retired>>);
-
-impl RetiredList {
-    pub(crate) fn push(&self, retired: Retired) {
-        lock(&self.0).push(retired);
-    }
-
-    pub(crate) fn take(&self) -> Vec<Retired> {
-        std::mem::take(&mut *lock(&self.0))
     }
 }

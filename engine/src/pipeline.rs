@@ -1,12 +1,12 @@
 //! Pipelines, made on first use from what the shader generator wrote down.
 
 use crate::depth::DepthFormat;
-use crate::descriptors::Descriptors;
 use crate::error::Named;
-use crate::features::Extra;
-use crate::gpu::lock;
-use crate::image::Format;
-use crate::recorder::Primitives;
+use crate::features::{Extra, Extras};
+use crate::lock::lock;
+use crate::names::Names;
+use crate::recorder::{Faces, Primitives};
+use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
 use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo, VertexFormat};
@@ -35,6 +35,9 @@ pub(crate) struct DrawState {
     pub(crate) depth_write: bool,
     pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
+    pub(crate) faces: Faces,
+    /// Colours are blended by their alpha.
+    pub(crate) blended: bool,
 }
 
 type Key = (&'static str, Vec<u32>, Option<DrawState>);
@@ -43,24 +46,46 @@ type Key = (&'static str, Vec<u32>, Option<DrawState>);
 pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
-    pub(crate) made_any: Mutex<bool>,
-    pub(crate) cache: vk::PipelineCache,
-    pub(crate) cache_file: Option<PathBuf>,
+    made_any: Mutex<bool>,
+    /// What gathered textures are read with.
+    sampler: vk::Sampler,
+    cache: vk::PipelineCache,
+    cache_file: Option<PathBuf>,
     info: AdapterInfo,
+    names: Names,
 }
 
 impl Pipelines {
-    pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>) -> Result<Self> {
+    pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>, names: &Names) -> Result<Self> {
         let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
         let cache = pipeline_cache::load(device, cache_file.as_deref())?;
+        // Nearest and clamped to the edge, as filled in; texels are gathered, never filtered.
+        let nearest = vk::SamplerCreateInfo::default()
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        // SAFETY: the device is alive; the info lives through the call.
+        let sampler = unsafe { device.create_sampler(&nearest, None) }.named("vkCreateSampler")?;
+        names.give(cache, "pipelines");
+        names.give(sampler, "gathering");
         Ok(Pipelines {
+            sampler,
             made: Mutex::default(),
             layouts: Mutex::default(),
             made_any: Mutex::new(false),
             cache,
             cache_file,
             info: info.clone(),
+            names: names.clone(),
         })
+    }
+
+    /// Writes the cache to its file, if it has one and anything was made since.
+    pub(crate) fn save(&self, device: &ash::Device) {
+        let Some(path) = &self.cache_file else { return };
+        if std::mem::take(&mut *lock(&self.made_any)) {
+            pipeline_cache::save(device, self.cache, path);
+        }
     }
 
     /// The pipeline of a stage, with the drawing state if it draws.
@@ -74,6 +99,7 @@ impl Pipelines {
             None => self.compute(device, stage, layout)?,
             Some(state) => self.graphics(device, stage, layout, state)?,
         };
+        self.names.give(raw, stage.info.name);
         let pipeline = Pipeline { raw, layout, set, push_stages: stage_flags(stage.info) };
         *lock(&self.made_any) = true;
         lock(&self.made).insert(key, pipeline);
@@ -91,20 +117,24 @@ impl Pipelines {
         }
         check_bindings(&self.info, info)?;
         let flags = stage_flags(info);
+        let samplers = [self.sampler];
         let bindings: Vec<_> = info
             .bindings
             .iter()
             .map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
+                let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(binding.binding)
                     .descriptor_type(descriptor_type(binding.kind))
                     .descriptor_count(1)
-                    .stage_flags(flags)
+                    .stage_flags(flags);
+                match binding.kind {
+                    BindingKind::GatheredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
             })
             .collect();
-        let set_info = vk::DescriptorSetLayoutCreateInfo::default()
-            .bindings(&bindings)
-            .flags(Descriptors::layout_flags(self.info.extras));
+        let set_info =
+            vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings).flags(set_flags(self.info.extras));
         // SAFETY: the device is alive; the arrays live through the calls.
         let set =
             unsafe { device.create_descriptor_set_layout(&set_info, None) }.named("vkCreateDescriptorSetLayout")?;
@@ -114,6 +144,8 @@ impl Pipelines {
         let layout_info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(used);
         // SAFETY: as above.
         let layout = unsafe { device.create_pipeline_layout(&layout_info, None) }.named("vkCreatePipelineLayout")?;
+        self.names.give(set, info.name);
+        self.names.give(layout, info.name);
         layouts.insert(info.name, (set, layout));
         Ok((set, layout))
     }
@@ -121,7 +153,7 @@ impl Pipelines {
     fn compute(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
         let constants = Constants::new(stage);
         let specialization = constants.info();
-        let module = shader(device, &stage.info.modules[0])?;
+        let module = self.shader(device, stage.info, &stage.info.modules[0])?;
         // A stage whose work group should be one subgroup says so by a constant of this name; the size is then required. It must
         // be right, if slower, whatever subgroups there are: not every device takes a size.
         let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
@@ -155,7 +187,7 @@ impl Pipelines {
         let specialization = constants.info();
         let mut modules = Vec::new();
         for module in stage.info.modules {
-            modules.push((module.kind, shader(device, module)?));
+            modules.push((module.kind, self.shader(device, stage.info, module)?));
         }
         let stages: Vec<_> = modules
             .iter()
@@ -175,6 +207,16 @@ impl Pipelines {
         made
     }
 
+    fn shader(&self, device: &ash::Device, stage: &StageInfo, module: &ShaderModule) -> Result<vk::ShaderModule> {
+        let words: Vec<u32> =
+            module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
+        let made = unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")?;
+        self.names.give(made, stage.name);
+        Ok(made)
+    }
+
     pub(crate) fn destroy(&self, device: &ash::Device) {
         // SAFETY: called once, when the device is idle and about to go.
         unsafe {
@@ -185,6 +227,7 @@ impl Pipelines {
                 device.destroy_pipeline_layout(*layout, None);
                 device.destroy_descriptor_set_layout(*set, None);
             }
+            device.destroy_sampler(self.sampler, None);
             device.destroy_pipeline_cache(self.cache, None);
         }
     }
@@ -223,8 +266,13 @@ fn draw_pipeline(
         Primitives::Points => vk::PrimitiveTopology::POINT_LIST,
     });
     let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-    // No face culling: mirrored transforms and open meshes are common in what users bring.
-    let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).cull_mode(vk::CullModeFlags::NONE);
+    let raster = vk::PipelineRasterizationStateCreateInfo::default()
+        .line_width(1.0)
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .cull_mode(match state.faces {
+            Faces::Both => vk::CullModeFlags::NONE,
+            Faces::Front => vk::CullModeFlags::BACK,
+        });
     let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
@@ -236,10 +284,19 @@ fn draw_pipeline(
         .src_color_blend_factor(vk::BlendFactor::ONE)
         .dst_color_blend_factor(vk::BlendFactor::ONE)
         .color_blend_op(vk::BlendOp::ADD);
-    let (formats, blends): (Vec<_>, Vec<_>) = attachment_formats(state)
-        .into_iter()
-        .map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace }))
-        .unzip();
+    let over = add
+        .src_color_blend_factor(vk::BlendFactor::SRC_ALPHA)
+        .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .src_alpha_blend_factor(vk::BlendFactor::ONE)
+        .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .alpha_blend_op(vk::BlendOp::ADD);
+    let blend = match state.colour {
+        Some(Format::Heat) => add,
+        _ if state.blended => over,
+        _ => replace,
+    };
+    let formats = attachment_formats(state);
+    let blends = vec![blend; formats.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -321,14 +378,6 @@ impl Constants {
     }
 }
 
-fn shader(device: &ash::Device, module: &ShaderModule) -> Result<vk::ShaderModule> {
-    let words: Vec<u32> =
-        module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
-    let info = vk::ShaderModuleCreateInfo::default().code(&words);
-    // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
-    unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")
-}
-
 fn first(
     made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
     call: &'static str,
@@ -355,6 +404,16 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::GatheredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+    }
+}
+
+/// How layouts of sets are made: for descriptors that are pushed, or that lie in a pool.
+fn set_flags(extras: Extras) -> vk::DescriptorSetLayoutCreateFlags {
+    if extras.has(Extra::PushDescriptor) {
+        vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
+    } else {
+        vk::DescriptorSetLayoutCreateFlags::empty()
     }
 }

@@ -1,8 +1,6 @@
 //! The pipeline cache on disk: one file a driver and device. A file that does not fit is ignored.
 
 use crate::error::Named;
-use crate::gpu::lock;
-use crate::pipeline::Pipelines;
 use crate::{AdapterInfo, Result};
 use ash::vk;
 use std::path::{Path, PathBuf};
@@ -33,13 +31,9 @@ pub(crate) fn load(device: &ash::Device, path: Option<&Path>) -> Result<vk::Pipe
 }
 
 /// Writes the cache beside its place and renames it there, so that a reader never sees half of it.
-pub(crate) fn save(device: &ash::Device, pipelines: &Pipelines) {
-    let Some(path) = &pipelines.cache_file else { return };
-    if !std::mem::take(&mut *lock(&pipelines.made_any)) {
-        return;
-    }
+pub(crate) fn save(device: &ash::Device, cache: vk::PipelineCache, path: &Path) {
     // SAFETY: device and cache are alive.
-    let Ok(bytes) = (unsafe { device.get_pipeline_cache_data(pipelines.cache) }) else { return };
+    let Ok(bytes) = (unsafe { device.get_pipeline_cache_data(cache) }) else { return };
     let beside = path.with_extension(format!("{}.tmp", std::process::id()));
     let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
     let written = written.and_then(|()| std::fs::write(&beside, bytes)).and_then(|()| std::fs::rename(&beside, path));

@@ -2,7 +2,7 @@
 
 use crate::barriers::{Barrier, BarrierTracker, Point, Use};
 use crate::frame::OcclusionQueries;
-use crate::image::{Format, Target};
+use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
 
@@ -16,6 +16,28 @@ pub enum Primitives {
     Lines,
     /// Points, one pixel large.
     Points,
+}
+
+/// Which sides of triangles show. Means nothing for lines and points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Faces {
+    /// Both.
+    #[default]
+    Both,
+    /// The front alone, where corners go round counter-clockwise on the screen.
+    Front,
+}
+
+/// What a surface does to what lies behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Hides it.
+    #[default]
+    Opaque,
+    /// Hides it where the fragment shader does not discard.
+    Masked,
+    /// Is blended over it by its alpha; never writes depth.
+    Translucent,
 }
 
 /// A multi-draw whose commands, and their number, lie on the GPU.
@@ -38,6 +60,10 @@ pub struct IndexedIndirect {
     pub max_draws: u32,
     /// How indices form primitives.
     pub primitives: Primitives,
+    /// Which sides show.
+    pub faces: Faces,
+    /// What it does to what lies behind it.
+    pub surface: Surface,
 }
 
 /// One recorded step.

@@ -117,9 +117,10 @@ impl Swapchain {
                 self.done.push(vulkan.device.create_semaphore(&Default::default(), None)?);
             }
         }
-        for image in &self.images {
-            vulkan.name(*image, "window.image");
-        }
+        vulkan.name(self.raw, "window");
+        self.images.iter().for_each(|image| vulkan.name(*image, "window.image"));
+        vulkan.name(self.given, "window.given");
+        self.done.iter().for_each(|done| vulkan.name(*done, "window.done"));
         Ok(())
     }
 
@@ -132,7 +133,7 @@ impl Swapchain {
             Err(answer) => return next("vkAcquireNextImageKHR", answer),
         };
         let (image, done) = (self.images[index as usize], self.done[index as usize]);
-        let commands = vulkan.begin_commands()?;
+        let commands = vulkan.begin_commands("window")?;
         self.copy(vulkan, commands, picture, image);
         let whole = vk::PipelineStageFlags2::ALL_COMMANDS;
         let after = [vk::SemaphoreSubmitInfo::default().semaphore(self.given).stage_mask(whole)];
@@ -143,7 +144,7 @@ impl Swapchain {
         let (swapchains, indices, waits) = ([self.raw], [index], [done]);
         let info =
             vk::PresentInfoKHR::default().wait_semaphores(&waits).swapchains(&swapchains).image_indices(&indices);
-        let queue = crate::gpu::lock(&vulkan.queue);
+        let queue = crate::lock::lock(&vulkan.queue);
         // SAFETY: the queue is locked; the image was given, is in the layout for showing, and its semaphore will be signalled.
         match unsafe { self.loader.queue_present(*queue, &info) } {
             Ok(_) => Ok(Next::Go),
@@ -171,7 +172,7 @@ impl Swapchain {
         let region = [blit(self.size, self.size)];
         // SAFETY: the command buffer is recording; both images are alive until the submission is waited for, and of this size.
         unsafe {
-            if let Some(labels) = &vulkan.labels {
+            if let Some(labels) = &vulkan.names.0 {
                 labels.cmd_begin_debug_utils_label(commands, &label);
             }
             device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().image_memory_barriers(&writable));
@@ -185,7 +186,7 @@ impl Swapchain {
                 vk::Filter::NEAREST,
             );
             device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().image_memory_barriers(&shown));
-            if let Some(labels) = &vulkan.labels {
+            if let Some(labels) = &vulkan.names.0 {
                 labels.cmd_end_debug_utils_label(commands);
             }
         }
@@ -193,7 +194,7 @@ impl Swapchain {
 
     /// Waits until nothing is in use and frees all of it.
     pub(crate) fn destroy(&mut self, vulkan: &Vulkan) {
-        let _queue = crate::gpu::lock(&vulkan.queue);
+        let _queue = crate::lock::lock(&vulkan.queue);
         // SAFETY: called once; after the wait nothing of it is in use. Null handles are ignored.
         unsafe {
             let _ = vulkan.device.device_wait_idle();

@@ -1,13 +1,13 @@
-//! How stages are timed, and the self-check that decides it.
+//! How stages are timed.
 //!
 //! A timestamp says when the device got that far. A driver that batches work (lavapipe) gets that far before the work is
 //! done, and charges it to whoever flushes it; there a full barrier after each timestamp splits the stages properly.
 
-use crate::features::Extra;
-use crate::frame::{StageTime, Statistics};
-use crate::gpu::{lock, Gpu, Vulkan};
-use crate::recorder::Recorded;
-use crate::{error::Named, Buffer, Format, Image, IndexedIndirect, Placement, Primitives, Result, Target};
+use crate::error::Named;
+use crate::features::{Extra, Extras};
+use crate::lock::lock;
+use crate::names::Names;
+use crate::{AdapterInfo, Result};
 use ash::vk;
 use std::fmt;
 use std::sync::Mutex;
@@ -47,7 +47,7 @@ pub(crate) struct Queries {
 pub(crate) struct QueryStore(Mutex<Vec<Queries>>);
 
 impl QueryStore {
-    pub(crate) fn take(&self, vulkan: &Vulkan) -> Result<Queries> {
+    pub(crate) fn take(&self, device: &ash::Device, extras: Extras, names: &Names) -> Result<Queries> {
         if let Some(queries) = lock(&self.0).pop() {
             return Ok(queries);
         }
@@ -60,10 +60,12 @@ impl QueryStore {
                 vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES
                     | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
             );
-        let made = |info: &vk::QueryPoolCreateInfo<'_>, extra| {
+        let made = |info: &vk::QueryPoolCreateInfo<'_>, extra: Extra| {
             // SAFETY: the device is alive, and has what the pool is for.
-            let make = || unsafe { vulkan.device.create_query_pool(info, None) }.named("vkCreateQueryPool");
-            vulkan.has(extra).then(make).transpose()
+            let make = || unsafe { device.create_query_pool(info, None) }.named("vkCreateQueryPool");
+            let pool = extras.has(extra).then(make).transpose()?;
+            pool.into_iter().for_each(|pool| names.give(pool, extra.name()));
+            Ok(pool)
         };
         Ok(Queries {
             timestamps: made(&timestamps, Extra::Timestamps)?,
@@ -85,18 +87,20 @@ impl QueryStore {
     }
 }
 
-/// Reads the timestamps of a finished submission.
-pub(crate) fn stage_times(vulkan: &Vulkan, pool: vk::QueryPool, ops: &[Recorded]) -> Result<Vec<StageTime>> {
-    let mut ticks = vec![0u64; ops.len() + 1];
+/// Reads the timestamps of a finished submission: milliseconds of each of its stages.
+pub(crate) fn stage_ms(
+    device: &ash::Device,
+    info: &AdapterInfo,
+    pool: vk::QueryPool,
+    stages: usize,
+) -> Result<Vec<f64>> {
+    let mut ticks = vec![0u64; stages + 1];
     // SAFETY: the submission is done, and wrote this many timestamps.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
+    unsafe { device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
         .named("vkGetQueryPoolResults")?;
-    let ms = f64::from(vulkan.info.timestamp_ns) * 1e-6;
-    let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
-        label: recorded.label.clone(),
-        ms: ticks_between(pair[0], pair[1], vulkan.info.timestamp_bits) as f64 * ms,
-    };
-    Ok(ops.iter().zip(ticks.windows(2)).map(time).collect())
+    let ms = f64::from(info.timestamp_ns) * 1e-6;
+    let time = |pair: &[u64]| ticks_between(pair[0], pair[1], info.timestamp_bits) as f64 * ms;
+    Ok(ticks.windows(2).map(time).collect())
 }
 
 /// Ticks from one timestamp to a later one. Those of fewer than 64 bits start again at 0: 36 bits of 83 ns after 95 minutes.
@@ -111,102 +115,18 @@ fn ticks_between(from: u64, to: u64, bits: u32) -> u64 {
     }
 }
 
-/// Reads the pipeline statistics of a finished submission.
-pub(crate) fn statistics(vulkan: &Vulkan, pool: vk::QueryPool) -> Result<Statistics> {
+/// Reads the pipeline statistics of a finished submission: primitives, and fragments shaded.
+pub(crate) fn statistics(device: &ash::Device, pool: vk::QueryPool) -> Result<[u64; 2]> {
     let mut counted = [[0u64; 2]];
     // SAFETY: the submission is done and the query was begun and ended in it.
-    unsafe { vulkan.device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }
+    unsafe { device.get_query_pool_results(pool, 0, &mut counted, vk::QueryResultFlags::TYPE_64) }
         .named("vkGetQueryPoolResults")?;
-    Ok(Statistics { primitives: counted[0][0], fragments: counted[0][1] })
-}
-
-/// Side of the picture that the self-check's heavy half fills, in pixels.
-const CHECK_PX: u32 = 512;
-
-/// Words that its heavy dispatch fills.
-const CHECK_WORDS: u32 = 1 << 20;
-
-/// Does the device charge work to the stage that asked for it? Light stages are timed with plain timestamps, alone and beside
-/// heavy ones: a light dispatch after a heavy drawing, and a light clear before a heavy dispatch. If either then takes three
-/// times as long and a fifth of the whole, stages are not kept apart. (lavapipe puts drawings off and runs dispatches at once,
-/// so that a clear is charged with the dispatch behind it.)
-pub(crate) fn self_check(gpu: &Gpu) -> Result<TimerMode> {
-    let check = Check::new(gpu)?;
-    let (mut drawn_on, mut dispatched_on) = (Vec::new(), Vec::new());
-    for _ in 0..3 {
-        let alone = check.run(gpu, false, 1)?;
-        let after_drawing = check.run(gpu, true, 1)?;
-        let before_dispatch = check.run(gpu, false, CHECK_WORDS)?;
-        let last = |times: &[f64]| times.last().copied().unwrap_or(0.0);
-        drawn_on.push(overcharge(last(&alone), last(&after_drawing), after_drawing.iter().sum()));
-        dispatched_on.push(overcharge(alone[0], before_dispatch[0], before_dispatch.iter().sum()));
-    }
-    tracing::debug!(?drawn_on, ?dispatched_on, "timer self-check: what light stages were charged with");
-    let often = |charged: &[bool]| charged.iter().filter(|charged| **charged).count() >= 2;
-    Ok(if often(&drawn_on) || often(&dispatched_on) { TimerMode::Split } else { TimerMode::Plain })
-}
-
-/// True if a light stage was charged with the work of its heavy neighbour.
-fn overcharge(alone_ms: f64, beside_ms: f64, total_ms: f64) -> bool {
-    beside_ms > 3.0 * alone_ms && beside_ms > 0.2 * total_ms
-}
-
-/// What the self-check runs on.
-struct Check {
-    _images: [Image; 2],
-    target: Target,
-    words: Buffer<u32>,
-    corners: Buffer<u32>,
-    commands: Buffer<shaders::types::DrawCommand>,
-}
-
-impl Check {
-    fn new(gpu: &Gpu) -> Result<Self> {
-        let size = [CHECK_PX; 2];
-        let colour = Image::new(gpu, "engine.timer_check.colour", Format::Colour, size)?;
-        let depth = Image::new(gpu, "engine.timer_check.depth", Format::Depth, size)?;
-        let command = shaders::types::DrawCommand { index_count: 3, instance_count: 1, ..Default::default() };
-        Ok(Check {
-            target: Target {
-                size,
-                colour: Some((colour.view(), Format::Colour)),
-                item: None,
-                depth: depth.view(),
-                depth_read_only: false,
-                strictly_nearer: false,
-            },
-            _images: [colour, depth],
-            words: Buffer::new(gpu, "engine.timer_check.words", CHECK_WORDS as usize, Placement::Storage)?,
-            corners: Buffer::with_data(gpu, "engine.timer_check.corners", &[0, 1, 2], Placement::Storage)?,
-            commands: Buffer::with_data(gpu, "engine.timer_check.commands", &[command], Placement::Storage)?,
-        })
-    }
-
-    /// Clears, draws a heavy triangle if told to, and dispatches over so many words: the time of each, in milliseconds.
-    fn run(&self, gpu: &Gpu, draws: bool, words: u32) -> Result<Vec<f64>> {
-        let mut frame = gpu.frame();
-        frame.timer_mode(TimerMode::Plain);
-        frame.clear(&self.target);
-        if draws {
-            let draw = IndexedIndirect {
-                vertices: self.corners.all().into(),
-                instances: self.corners.all().into(),
-                indices: self.corners.all().into(),
-                commands: self.commands.all().into(),
-                count: None,
-                max_draws: 1,
-                primitives: Primitives::Triangles,
-            };
-            frame.draw(shaders::engine::SpinPixels {}, draw, &self.target);
-        }
-        frame.dispatch(shaders::engine::SpinWords { words: self.words.all(), word_count: words }, words);
-        Ok(frame.finish()?.stages.iter().map(|stage| stage.ms).collect())
-    }
+    Ok(counted[0])
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{overcharge, ticks_between};
+    use super::ticks_between;
 
     #[test]
     fn timestamps_that_start_again_at_zero_still_tell_the_time() {
@@ -217,12 +137,5 @@ mod tests {
         assert_eq!(ticks_between(12, 5, 36), 0, "a step back");
         // Bits beyond the valid ones mean nothing.
         assert_eq!(ticks_between(0xff << 36 | 5, 12, 36), 7);
-    }
-
-    #[test]
-    fn a_light_stage_that_pays_for_its_neighbour_is_noticed() {
-        assert!(overcharge(0.1, 1.7, 2.0));
-        assert!(!overcharge(0.1, 0.12, 2.0), "as light as alone");
-        assert!(!overcharge(0.001, 0.01, 2.0), "noise beside a heavy stage");
     }
 }

@@ -1,8 +1,9 @@
 //! Copies outside frames: uploads, read-backs, one-time commands. Each waits until it is done.
 
 use crate::error::Named;
-use crate::gpu::{lock, Gpu, Vulkan};
-use crate::image::Format;
+use crate::gpu::{Gpu, Vulkan};
+use crate::lock::lock;
+use crate::target::Format;
 use crate::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::Allocation;
@@ -24,6 +25,7 @@ impl<'a> Staging<'a> {
         let info = vk::BufferCreateInfo::default().size(bytes.max(4) as u64).usage(usage);
         // SAFETY: the device is alive.
         let raw = unsafe { vulkan.device.create_buffer(&info, None) }.named("vkCreateBuffer")?;
+        vulkan.name(raw, "staging");
         let mut staging = Staging { vulkan, raw, allocation: None };
         // SAFETY: the buffer was just made.
         let requirements = unsafe { vulkan.device.get_buffer_memory_requirements(raw) };
@@ -129,7 +131,7 @@ pub(crate) fn full_barrier(device: &ash::Device, commands: vk::CommandBuffer) {
 impl Vulkan {
     /// Records commands, runs them between full barriers and waits.
     pub(crate) fn run_once(&self, record: impl FnOnce(&ash::Device, vk::CommandBuffer)) -> Result<()> {
-        let commands = self.begin_commands()?;
+        let commands = self.begin_commands("copy")?;
         full_barrier(&self.device, commands);
         record(&self.device, commands);
         full_barrier(&self.device, commands);
@@ -139,7 +141,7 @@ impl Vulkan {
         })
     }
 
-    pub(crate) fn begin_commands(&self) -> Result<vk::CommandBuffer> {
+    pub(crate) fn begin_commands(&self, name: &str) -> Result<vk::CommandBuffer> {
         let pool = lock(&self.pool);
         let info = vk::CommandBufferAllocateInfo::default()
             .command_pool(*pool)
@@ -150,6 +152,8 @@ impl Vulkan {
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the command buffer was just made.
         unsafe { self.device.begin_command_buffer(commands, &begin) }.named("vkBeginCommandBuffer")?;
+        // Once it is begun: RenderDoc forgets what it was called before.
+        self.name(commands, name);
         Ok(commands)
     }
 
@@ -172,6 +176,7 @@ impl Vulkan {
         unsafe {
             self.device.end_command_buffer(commands)?;
             let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
+            self.name(fence, "submission");
             let infos = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
             let submits = [vk::SubmitInfo2::default()
                 .command_buffer_infos(&infos)

@@ -2,8 +2,9 @@
 
 use crate::error::Named;
 use crate::gpu::{Gpu, Vulkan};
-use crate::image::{Format, Image};
+use crate::image::Image;
 use crate::swapchain::{blit, extent, next, Next, Swapchain, Terms, Wish, LABEL};
+use crate::target::Format;
 use crate::transfer::{full_barrier, whole_image};
 use crate::{Buffer, Error, Placement, Result};
 use ash::{khr, vk};

@@ -4,8 +4,8 @@ use crate::lab::{error_of, Lab, Subject};
 use crate::laws::faults_of;
 use crate::{sessions, Case};
 use engine::Gpu;
+use sightline::run::truth::RunTruth;
 use sightline::run::Contender;
-use sightline::truth::RunTruth;
 
 /// Before a still camera the second frame and all others are exact: what the first missed is not in its depth, which hides it
 /// no more. The camera comes from another place, without a cut.

@@ -5,7 +5,7 @@ use crate::Random;
 use culling::World;
 use engine::Gpu;
 use scenes::Projection;
-use sightline::targets::Targets;
+use sightline::run::targets::Targets;
 
 /// Sizes that pyramids get wrong: single rows and columns, odd ones, powers of two and their neighbours.
 pub const SIZES: [[u32; 2]; 22] = [

@@ -4,7 +4,7 @@ use crate::Case;
 use culling::{Method, View, VisibleSets};
 use engine::Gpu;
 use scenes::Shot;
-use sightline::metrics::{FrameError, Truth};
+use sightline::measures::metrics::{FrameError, Truth};
 use sightline::stress::lab;
 pub use sightline::stress::lab::{Subject, Take};
 use std::ops::{Deref, DerefMut};

@@ -3,9 +3,9 @@
 use crate::laws::faults_of;
 use crate::Subject;
 use engine::Gpu;
+use sightline::run::session::{Session, SessionOptions};
+use sightline::run::truth::RunTruth;
 use sightline::run::Contender;
-use sightline::session::{Session, SessionOptions};
-use sightline::truth::RunTruth;
 
 /// Scene, scale and path of each run.
 pub const RUNS: [(&str, f64, &str); 13] = [

@@ -2,7 +2,7 @@
 
 use culling::{Entry, METHODS};
 use harness::{assert_caught, assert_none, gpu, sessions, worlds, Case, Lab, Subject};
-use sightline::boxes_view;
+use sightline::pictures::boxes_view;
 use sightline::run::Contender;
 
 /// One line for each frame in which boxes and count differ, or a box is not one of the scene's; `spoil` plants errors.

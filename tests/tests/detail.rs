@@ -4,10 +4,10 @@ use culling::world::DETAIL_OPTION;
 use culling::{Entry, METHODS};
 use harness::sessions::open_at_speed_one;
 use harness::{assert_none, gpu};
-use sightline::metrics::Truth;
+use sightline::measures::metrics::Truth;
+use sightline::run::session::Session;
+use sightline::run::truth::RunTruth;
 use sightline::run::Contender;
-use sightline::session::Session;
-use sightline::truth::RunTruth;
 
 const SMALL_PX: u32 = 12;
 const FRAMES: usize = 4;

@@ -1,8 +1,8 @@
 //! glTF files from elsewhere, from the file to the pixel: those of Debian's assimp-testmodels, where it is installed.
 
 use harness::{assert_none, gpu, sessions};
-use sightline::session::{Session, SessionOptions};
-use sightline::truth::draw_everything;
+use sightline::run::session::{Session, SessionOptions};
+use sightline::run::truth::draw_everything;
 use std::path::Path;
 
 const FOLDER: &str = "/usr/share/assimp/models/glTF2";
@@ -30,9 +30,9 @@ fn covered(session: &mut Session) -> usize {
     let images = draw_everything(session, 0).unwrap();
     if let Some(folder) = std::env::var_os("SIGHTLINE_TEST_PICTURES") {
         let name = session.options().scene.rsplit('/').next().unwrap_or_default().to_owned() + ".png";
-        sightline::png_out::Picture::colour(&images).write(&Path::new(&folder).join(name)).unwrap();
+        sightline::pictures::png_out::Picture::colour(&images).write(&Path::new(&folder).join(name)).unwrap();
     }
-    images.items.iter().filter(|item| **item != sightline::metrics::NO_ITEM).count()
+    images.items.iter().filter(|item| **item != sightline::measures::metrics::NO_ITEM).count()
 }
 
 #[test]

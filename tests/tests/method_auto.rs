@@ -3,9 +3,9 @@
 
 use culling::auto::trust::EVERY;
 use culling::{drawn_objects, Drawn};
+use sightline::run::session::{Session, SessionOptions};
+use sightline::run::truth::RunTruth;
 use sightline::run::Contender;
-use sightline::session::{Session, SessionOptions};
-use sightline::truth::RunTruth;
 
 harness::exact_method_tests!("auto");
 harness::skipping_method_tests!("auto");

@@ -40,7 +40,7 @@ fn sightline(arguments: &str, paths: &[&Path]) -> Result<(), String> {
     let words = ["sightline"].into_iter().chain(arguments.split_whitespace()).map(PathBuf::from);
     let typed = words.chain(paths.iter().map(|path| path.to_path_buf()));
     // As `main` prints it.
-    sightline::commands::run(Cli::parse_from(typed)).map_err(|error| format!("{error:#}"))
+    sightline::cli::commands::run(Cli::parse_from(typed)).map_err(|error| format!("{error:#}"))
 }
 
 /// Few small frames, with a method that errs: `woc` without its care, at a speed at which it does.

@@ -2,8 +2,8 @@
 
 use culling::world::Still;
 use harness::{gpu, sessions};
-use sightline::bench::{bench, BenchOptions};
 use sightline::results::{stages_table, Results};
+use sightline::run::bench::{bench, BenchOptions};
 
 const METHODS: [&str; 4] = ["frustum", "hzb", "eovc", "auto"];
 

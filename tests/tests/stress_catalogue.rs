@@ -4,7 +4,7 @@ use culling::{DrawList, Guarantee, Method, Options, Setup, View, World, METHODS}
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use harness::{assert_none, gpu, Subject};
 use shaders::types::{Bounds, DrawCommand, PyramidLevel};
-use sightline::commands::all_drills;
+use sightline::cli::commands::all_drills;
 use sightline::stress::refusals::refusal_faults;
 use sightline::stress::{run, Outcome, Plan};
 use std::sync::atomic::{AtomicU32, Ordering};

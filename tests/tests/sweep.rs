@@ -2,8 +2,8 @@
 
 use anyhow::bail;
 use harness::gpu;
-use sightline::session::{Session, SessionOptions};
-use sightline::sweep::{run, Kept, Sweep, SweepPlan};
+use sightline::run::session::{Session, SessionOptions};
+use sightline::run::sweep::{run, Kept, Sweep, SweepPlan};
 use std::path::{Path, PathBuf};
 
 fn plan(folder: &Path) -> SweepPlan {

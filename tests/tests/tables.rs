@@ -3,11 +3,11 @@
 use culling::warp::{Settings, OPTIONS};
 use culling::Options;
 use harness::{gpu, sessions};
-use sightline::bench::{bench, BenchOptions};
+use sightline::pictures::warp_view::warp;
+use sightline::run::bench::{bench, BenchOptions};
+use sightline::run::session::{Session, SessionOptions};
 use sightline::run::Contender;
-use sightline::session::{Session, SessionOptions};
-use sightline::warp_errors::warp_errors;
-use sightline::warp_view::warp;
+use sightline::tables::warp_errors::warp_errors;
 
 const FRAMES: usize = 4;
 

@@ -4,7 +4,7 @@ use culling::{Guarantee, METHODS};
 use engine::Gpu;
 use harness::device;
 use scenes::{CameraPath, Scene, SceneOptions, Shot};
-use sightline::session::SessionOptions;
+use sightline::run::session::SessionOptions;
 use sightline::view::camera::FlyCamera;
 use sightline::view::controls::{Controls, Show};
 use sightline::view::lab::Lab;

@@ -5,7 +5,7 @@ use culling::{DrawList, Drawn, View, World};
 use engine::{Buffer, Error, Extra, FrameReport, Gpu, GpuOptions, IndexedIndirect, Placement, TimerMode};
 use harness::{assert_caught, assert_none, gpu, laws, options, worlds, Case, Lab, Random, Subject};
 use shaders::types::DrawCommand;
-use sightline::targets::Targets;
+use sightline::run::targets::Targets;
 
 /// A device without a feature. Stages are timed without a self-check, which takes longer than all else here.
 fn open(extra: Extra) -> Gpu {

@@ -1,10 +1,11 @@
 //! What a frame asks and draws, in the order in which the host decides it: runs of draws, runs of queries, and waits.
 
 use crate::boxes::BoxShape;
+use crate::world::Range;
 use crate::{Error, Options, Result, Setup, View, Work, World};
-use engine::{Buffer, Extra, Frame, IndexedIndirect, OcclusionQueries, Placement, Primitives, Queried, Target};
+use engine::{Buffer, Extra, Frame, IndexedIndirect, OcclusionQueries, Placement, Queried, Target};
 use shaders::types::{DrawCommand, TreeNode};
-use shaders::{draw, queries, BufferRef};
+use shaders::{queries, BufferRef};
 
 /// Queries that can be asked before answers must be waited for.
 const MOST_QUERIES: u32 = 16_384;
@@ -20,9 +21,9 @@ const MOST_STEPS: usize = 3_000;
 enum Run {
     Nothing,
     /// Objects of one kind of primitive.
-    Draws(Primitives),
+    Draws(Option<Range>),
     /// Such objects, each counted by a query.
-    QueriedDraws(Primitives),
+    QueriedDraws(Option<Range>),
     /// Boxes, each counted by a query.
     Boxes,
 }
@@ -117,8 +118,8 @@ impl Asking {
         self.tested.clear();
         self.work = Work::default();
         let mut first = 0;
-        let primitives = |command: &DrawCommand| primitives_of(world, command.first_instance);
-        for run in self.drawn.chunk_by(|one, next| primitives(one) == primitives(next)) {
+        let kind = |command: &DrawCommand| kind_of(world, command.first_instance);
+        for run in self.drawn.chunk_by(|one, next| kind(one) == kind(next)) {
             self.draw_part(f, (world, view, target), first..first + run.len(), None);
             first += run.len();
             if f.recorded().len() > MOST_STEPS {
@@ -146,8 +147,9 @@ impl Asking {
         part: std::ops::Range<usize>,
         first_query: Option<u32>,
     ) {
-        let primitives = primitives_of(world, self.drawn[part.start].first_instance);
-        let draw = object_draw(world, part_of(&self.commands, part.start, part.len()), part.len() as u32, primitives);
+        let Some(kind) = kind_of(world, self.drawn[part.start].first_instance) else { return };
+        let range = Range { count: part.len() as u32, ..kind };
+        let draw = world.multi_draw(&range, part_of(&self.commands, part.start, part.len()), None);
         match first_query {
             None => world.draw_indirect(f, draw, view, target),
             Some(first) => world.query_indirect(f, draw, Queried { queries: &self.queries, first }, view, target),
@@ -165,39 +167,14 @@ fn least_samples(options: &Options, counts: bool, name: &'static str) -> Result<
     Ok(least)
 }
 
-fn primitives_of(world: &World, object: u32) -> Primitives {
+/// How an object is drawn, as a range of none.
+fn kind_of(world: &World, object: u32) -> Option<Range> {
     let range = world.ranges().iter().find(|range| (range.first..range.first + range.count).contains(&object));
-    range.map_or(Primitives::Triangles, |range| range.primitives)
+    range.map(|range| Range { first: 0, count: 0, ..*range })
 }
 
 fn part_of(commands: &Buffer<DrawCommand>, first: usize, count: usize) -> BufferRef<DrawCommand> {
     BufferRef { size: (count * size_of::<DrawCommand>()) as u64, ..commands.all().from(first) }
-}
-
-fn object_draw(world: &World, commands: BufferRef<DrawCommand>, draws: u32, primitives: Primitives) -> IndexedIndirect {
-    IndexedIndirect {
-        vertices: world.vertices().into(),
-        instances: world.objects().into(),
-        indices: world.indices().into(),
-        commands: commands.into(),
-        count: None,
-        max_draws: draws,
-        primitives,
-    }
-}
-
-impl World {
-    /// Draws objects, each command counted by a query.
-    fn query_indirect(&self, f: &mut Frame, draw: IndexedIndirect, queried: Queried<'_>, view: &View, target: &Target) {
-        let view = view.gpu();
-        if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            f.query_objects(draw::Overdraw { view }, draw, queried, target);
-        } else if target.item.is_some() {
-            f.query_objects(draw::ObjectsAndItems { view }, draw, queried, target);
-        } else {
-            f.query_objects(draw::Objects { view }, draw, queried, target);
-        }
-    }
 }
 
 /// A frame in the making: what is drawn and asked is recorded in this order.
@@ -213,7 +190,7 @@ pub(super) struct Recording<'a> {
 impl Recording<'_> {
     /// Draws an object.
     pub(super) fn draw(&mut self, object: u32) -> Result<()> {
-        self.go_on(Run::Draws(primitives_of(self.world, object)))?;
+        self.go_on(Run::Draws(kind_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         Ok(())
     }
@@ -221,7 +198,7 @@ impl Recording<'_> {
     /// Draws an object and asks how much of it passes the depth test.
     pub(super) fn draw_and_ask(&mut self, object: u32) -> Result<()> {
         self.make_room(0)?;
-        self.go_on(Run::QueriedDraws(primitives_of(self.world, object)))?;
+        self.go_on(Run::QueriedDraws(kind_of(self.world, object)))?;
         self.on.drawn.push(self.on.all[object as usize]);
         self.on.pending += 1;
         self.on.work.queries += 1;

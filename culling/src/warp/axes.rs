@@ -1,6 +1,6 @@
 //! The axes of motion bounds in plain Rust: the definition of `warp/orient_axes` and of turning to them.
 
-use super::twin::{union_of, Grid, NO_MOTION};
+use super::grid::{union_of, Grid, NO_MOTION};
 use shaders::types::{MotionBound, TexelMotion, DEPTH_FAR};
 
 /// A motion by its parts along an axis and across it. Twin of `turned_to`.

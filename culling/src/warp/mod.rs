@@ -5,6 +5,7 @@
 //! Not a method, but the part that `woc` and its kin share.
 
 pub mod axes;
+mod grid;
 mod reprojection;
 mod settings;
 pub mod twin;

@@ -4,31 +4,16 @@ mod search;
 
 pub use search::{search_depth, Search};
 
+pub use super::grid::{Grid, NO_MOTION};
+
 use super::axes::{turned_back, turned_to};
+use super::grid::union_of;
 use glam::{Mat4, UVec2, Vec2, Vec4};
 use shaders::types::{
     MotionBound, PyramidLevel, Reprojection, TexelMotion, DEPTH_FAR, DEPTH_HOLE, REDUCED_LEVELS, WARP_REACH,
 };
 
-/// A picture of `size`, row by row from the top.
-#[derive(Clone, Copy, Debug)]
-pub struct Grid<'a, T> {
-    /// Width and height.
-    pub size: [u32; 2],
-    /// `width * height` values.
-    pub values: &'a [T],
-}
-
-impl<T: Copy> Grid<'_, T> {
-    pub(super) fn at(&self, x: u32, y: u32) -> T {
-        self.values[(y * self.size[0] + x) as usize]
-    }
-}
-
 const NOWHERE: TexelMotion = TexelMotion { offset: [0.0; 2], depth: DEPTH_FAR };
-
-/// Bound of nothing.
-pub const NO_MOTION: MotionBound = MotionBound { low: [3.0e38; 2], high: [-3.0e38; 2] };
 
 /// The last frame's depth by pixel, and where each pixel went.
 pub struct LastDepth<'a> {
@@ -109,13 +94,6 @@ fn moved(
 /// True unless the bound is empty.
 pub fn has_motion(bound: &MotionBound) -> bool {
     (0..2).all(|axis| bound.low[axis] <= bound.high[axis])
-}
-
-pub(super) fn union_of(a: MotionBound, b: MotionBound) -> MotionBound {
-    MotionBound {
-        low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
-        high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
-    }
 }
 
 fn common_to(a: MotionBound, b: MotionBound) -> MotionBound {

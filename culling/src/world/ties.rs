@@ -6,12 +6,10 @@
 //! occluders, and the picture would flicker. So it is drawn with "nearer", and its triangles last to first: then the later of
 //! its own still stays.
 
-use crate::pack::DrawList;
-use crate::world::{View, World};
+use crate::world::World;
 use crate::Result;
-use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
+use engine::{Buffer, Gpu, IndexedIndirect, Placement, Primitives};
 use shaders::types::MeshRange;
-use shaders::BufferRef;
 
 /// The indices of a world with each mesh's primitives last to first.
 pub struct LastToFirst {
@@ -55,29 +53,6 @@ fn turn_round(indices: &mut [u32], mesh: MeshRange, primitives: Primitives) {
     // All indices round, then the corners of each primitive back: a triangle of other corners is another triangle.
     mesh.reverse();
     mesh.chunks_mut(corners).for_each(<[u32]>::reverse);
-}
-
-impl World {
-    /// Draws what a list holds where it is nearer than what is there, and sets the flag of each object that is, if there are
-    /// flags to set.
-    pub fn draw_behind(
-        &self,
-        f: &mut Frame,
-        list: &DrawList,
-        order: &LastToFirst,
-        visible: Option<BufferRef<u32>>,
-        view: &View,
-        target: &Target,
-    ) {
-        let target = target.keeping_ties();
-        for draw in list.draws(self) {
-            let draw = order.turned(draw);
-            match visible {
-                Some(visible) => self.draw_indirect_flagged(f, draw, visible, view, &target),
-                None => self.draw_indirect(f, draw, view, &target),
-            }
-        }
-    }
 }
 
 #[cfg(test)]

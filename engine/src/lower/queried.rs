@@ -3,8 +3,8 @@
 use super::{range, Recording};
 use crate::features::Extra;
 use crate::frame::OcclusionQueries;
-use crate::image::Target;
 use crate::recorder::IndexedIndirect;
+use crate::target::Target;
 use crate::Result;
 use ash::vk;
 use shaders::BoundStage;

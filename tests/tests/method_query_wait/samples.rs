@@ -42,6 +42,8 @@ impl Method for Counting {
                 count: None,
                 max_draws: range.count,
                 primitives: range.primitives,
+                faces: range.faces,
+                surface: range.surface,
             };
             let queried = Queried { queries: &self.queries, first: range.first };
             f.query_objects(draw::ObjectsAndItems { view: view.gpu() }, draw, queried, target);

@@ -131,7 +131,7 @@ fn each_kind_of_primitive_is_packed_in_its_own_range() {
     let chosen = flags(&mut random, world.len(), 0.4);
     let buffer = Buffer::with_data(&gpu, "test.flags", &chosen, STORAGE).unwrap();
     let list = DrawList::new(&gpu, "test.list", &world).unwrap();
-    let targets = sightline::targets::Targets::new(&gpu, case.size).unwrap();
+    let targets = sightline::run::targets::Targets::new(&gpu, case.size).unwrap();
     let view = culling::View::new(&case.shots[0], case.size, 0, gpu.snap_px());
     let mut f = gpu.frame();
     f.clear(&targets.timed());
@@ -190,7 +190,7 @@ fn shuffled_commands_are_the_same_spread_evenly() {
         let flags = Buffer::with_data(&gpu, "test.flags", &chosen, STORAGE).unwrap();
         let run = |style: Commands| -> Vec<Vec<DrawCommand>> {
             let list = DrawList::styled(&gpu, "test.list", &world, style).unwrap();
-            let targets = sightline::targets::Targets::new(&gpu, case.size).unwrap();
+            let targets = sightline::run::targets::Targets::new(&gpu, case.size).unwrap();
             let view = culling::View::new(&case.shots[0], case.size, 0, gpu.snap_px());
             let mut f = gpu.frame();
             f.clear(&targets.timed());

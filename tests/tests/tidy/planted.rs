@@ -56,6 +56,7 @@ impl Workspace {
             dead_files,
             forbidden_edges,
             unsafe_outside_the_engine,
+            module_circles,
         ];
         laws.iter().flat_map(|law| law(&self.0)).collect()
     }
@@ -149,4 +150,24 @@ fn unsafe_code_is_caught() {
     let lint = Workspace::tidy("unsafe-lint");
     lint.write("tools/src/lib.rs", "#![forbid(unsafe_code)] // no unsafe\n");
     assert_eq!(lint.all_faults(), Vec::<String>::new());
+}
+
+#[test]
+fn circles_of_modules_are_caught() {
+    let modules = |w: &Workspace, a: &str, b: &str, c: &str| {
+        w.write("scenes/src/lib.rs", "pub mod a;\nmod b;\nmod c;\n");
+        w.write("scenes/src/a.rs", a);
+        w.write("scenes/src/b.rs", b);
+        w.write("scenes/src/c/mod.rs", c);
+    };
+    planted("circle", "scenes/src: a, b use each other", |w| {
+        modules(w, "use crate::b::X;\n", "use crate::{a, y};\n", "")
+    });
+    planted("long-circle", "a, b, c use each other", |w| {
+        modules(w, "use crate::b::X;\n", "fn f() { crate::c::g() }\n", "use crate::a;\n");
+    });
+    let straight = Workspace::tidy("no-circle");
+    let tests = "#[cfg(test)]\nmod tests {\n    use crate::a;\n}\n";
+    modules(&straight, "use crate::b::c;\nuse crate::c;\n", tests, "// crate::a\nuse crate::b::X;\n");
+    assert_eq!(straight.all_faults(), Vec::<String>::new());
 }

@@ -58,7 +58,7 @@ impl DeviceArgs {
                 TimerChoice::Plain => TimerMode::Plain,
                 TimerChoice::Split => TimerMode::Split,
             }),
-            cache_dir: crate::session::cache_folder(),
+            cache_dir: crate::run::session::cache_folder(),
             barrier_every_stage: self.barrier_every_stage,
             depth: match self.depth_format {
                 DepthChoice::D32 => DepthFormat::ReversedD32,

@@ -1,6 +1,7 @@
 //! The command line: what its flags come to, and what it refuses.
 
 use super::*;
+use crate::run::methods::parse_methods;
 use clap::CommandFactory;
 
 #[test]
@@ -75,6 +76,18 @@ fn a_level_of_detail_reaches_the_session() {
     };
     assert_eq!(level("sightline shot"), SceneOptions::default().detail);
     assert_eq!(level("sightline shot --scene powerplant --detail-level 3"), 3);
+}
+
+#[test]
+fn a_shading_reaches_the_session() {
+    let shading = |line: &str| match Cli::parse_from(line.split(' ')).command {
+        Command::Shot(arguments) => arguments.scene.session().unwrap().shading,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(shading("sightline shot"), None, "what the scene has");
+    assert_eq!(shading("sightline shot --shading lambert"), Some(Shading::Lambert));
+    assert_eq!(shading("sightline shot --shading textured"), Some(Shading::Textured));
+    assert!(Cli::try_parse_from("sightline shot --shading flat".split(' ')).is_err());
 }
 
 #[test]

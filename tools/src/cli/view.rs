@@ -26,6 +26,9 @@ pub struct ViewArgs {
     /// Saves what the window shows in the last frame to this PNG file
     #[arg(long, value_name = "FILE")]
     pub screenshot: Option<PathBuf>,
+    /// Captures this frame of the window (counted from 0) with RenderDoc, to a file in --out
+    #[arg(long, value_name = "FRAME")]
+    pub capture: Option<usize>,
     /// Folder for screenshots, saved cameras and recorded paths
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,

@@ -1,6 +1,6 @@
 //! How sure a ratio of two series of times is.
 
-use crate::stats;
+use crate::measures::stats;
 use crate::stress::Random;
 use serde::Serialize;
 

@@ -14,8 +14,8 @@ pub use differences::{differences, Difference};
 pub use gate::{Figure, Gate, Outcome};
 pub use print::{gates_text, run_lines, text};
 
+use crate::measures::stats;
 use crate::results::{Method, Results};
-use crate::stats;
 use anyhow::{bail, Result};
 use serde::Serialize;
 use std::collections::BTreeMap;

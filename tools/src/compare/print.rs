@@ -1,7 +1,7 @@
 //! A comparison on the terminal, 120 columns wide.
 
 use super::{Change, Comparison, Outcome, Pair, Times, Verdict, FEWEST_FRAMES};
-use crate::grid::{clipped, milliseconds, Grid};
+use crate::results::grid::{clipped, milliseconds, Grid};
 use crate::results::{decibels, error, heading, percent, quantity, Results};
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! The report's pictures, collected while the untimed pass runs: each method's worst frame, and overdraw and item buffer of one
 //! frame. Only these are kept, made small and packed as PNG, since a run may have many frames and methods.
 
-use crate::bench::Seen;
-use crate::metrics::{class_of, FrameError, FrameImages, PixelClass};
-use crate::png_out::Picture;
+use crate::measures::metrics::{class_of, FrameError, FrameImages, PixelClass};
+use crate::pictures::png_out::Picture;
+use crate::run::bench::Seen;
 use base64::Engine;
 use std::collections::BTreeMap;
 use std::io;

@@ -21,7 +21,7 @@ mod words;
 
 pub use images::{DataUri, Gallery, MethodPictures, WorstFrame};
 
-use crate::files::write_atomically;
+use crate::results::files::write_atomically;
 use crate::results::{Method, Results};
 use anyhow::Result;
 use minijinja::value::Serde;
@@ -148,5 +148,5 @@ fn front(results: &Results) -> Vec<usize> {
         .iter()
         .map(|&place| (time(results, &results.methods[place]), results.methods[place].object_error_percent))
         .collect();
-    crate::pareto::front(&points).into_iter().map(|point| real[point]).collect()
+    crate::measures::pareto::front(&points).into_iter().map(|point| real[point]).collect()
 }

@@ -2,8 +2,8 @@
 
 use super::bars::{bars, Bars, Part, RowData};
 use super::plot::{colour, number, COLOURS};
+use crate::measures::stats;
 use crate::results::{Method, Results};
-use crate::stats;
 use serde::Serialize;
 
 /// What no stage accounts for: submitting, and waiting for read-backs in the middle of the frame.

@@ -1,7 +1,7 @@
 //! A report is well formed, holds all that was run with every name escaped, and says what it cannot show.
 
 use super::*;
-use crate::files::tests::Folder;
+use crate::results::files::tests::Folder;
 use crate::results::tests::results;
 use std::collections::BTreeMap;
 
@@ -20,7 +20,11 @@ fn nasty() -> Results {
 }
 
 fn gallery() -> Gallery {
-    let error = crate::metrics::compare(&crate::metrics::Truth::new(one_pixel(), 1).unwrap(), &one_pixel(), &[true]);
+    let error = crate::measures::metrics::compare(
+        &crate::measures::metrics::Truth::new(one_pixel(), 1).unwrap(),
+        &one_pixel(),
+        &[true],
+    );
     let uri = |name: &str| format!("data:image/png;base64,{name}");
     let worst = WorstFrame { frame: 1, error: error.unwrap(), pictures: ["t", "m", "d"].map(uri) };
     let faulty = MethodPictures { worst: Some(worst), buffers: Some(["o", "i"].map(uri)) };
@@ -30,8 +34,15 @@ fn gallery() -> Gallery {
     gallery
 }
 
-fn one_pixel() -> crate::metrics::FrameImages {
-    crate::metrics::FrameImages { width: 1, height: 1, colour: vec![[9; 4]], depth: vec![0.5], items: vec![0] }
+fn one_pixel() -> crate::measures::metrics::FrameImages {
+    crate::measures::metrics::FrameImages {
+        width: 1,
+        height: 1,
+        colour: vec![[9; 4]],
+        depth: vec![0.5],
+        items: vec![0],
+        seen_through: vec![],
+    }
 }
 
 /// Parses a report as XML, which is stricter than HTML: every tag closed, every attribute quoted, every letter allowed.

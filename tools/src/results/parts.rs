@@ -1,8 +1,8 @@
 //! What each part of a method's frame costs: the breakdown of the EOVC thesis' figure 16, from the stages' names.
 
 use super::Method;
-use crate::grid::{milliseconds, Grid};
-use crate::stats;
+use crate::measures::stats;
+use crate::results::grid::{milliseconds, Grid};
 
 /// Stages that a method puts in no part: clearing the target, moving objects.
 const NO_PART: &str = "no part";

@@ -1,7 +1,7 @@
 //! The tables on the terminal: one row per method, and one row per stage for `--explain`. Both fit 120 columns.
 
 use super::{Method, Results, Stage};
-use crate::grid::{clipped, milliseconds, Grid};
+use crate::results::grid::{clipped, milliseconds, Grid};
 
 /// A longer label gets a line of its own above its numbers: a shortened one could no longer be told from another.
 const LABEL_WIDTH: usize = 22;

@@ -1,7 +1,7 @@
 //! The contract is kept both ways, broken files are named with their field, and the tables say what they should.
 
 use super::*;
-use crate::files::tests::Folder;
+use crate::results::files::tests::Folder;
 use std::fs;
 
 fn method(label: &str, id: &str, median: f64) -> Method {

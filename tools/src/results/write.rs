@@ -1,7 +1,7 @@
 //! Writing `results.json` and `results.csv`, each whole or not at all.
 
 use super::{read, Fault, Method, Results, ResultsError};
-use crate::files::write_atomically;
+use crate::results::files::write_atomically;
 use std::path::Path;
 
 impl Results {

@@ -4,7 +4,7 @@ use super::catalogue::{Drill, DrillId, CHANCE, FAMILIES};
 use super::footprints::{covered, Covered, LEAST_HEIGHT_PX};
 use super::lab::{error_of, Lab, Take};
 use super::{settings, Random, Subject};
-use crate::metrics::{FrameError, Truth};
+use crate::measures::metrics::{FrameError, Truth};
 use anyhow::Result;
 use culling::VisibleSets;
 use engine::Gpu;
@@ -143,12 +143,12 @@ fn one_drill(gpu: &Gpu, plan: &Plan, id: DrillId, outcome: &mut Outcome) -> Resu
 
 /// The truth of each frame, and the visible sets.
 pub(super) fn truths(lab: &mut Lab, drill: &Drill) -> Result<(Vec<Truth>, Arc<VisibleSets>)> {
-    let mut sets = VisibleSets::new(lab.world.len());
+    let mut sets = VisibleSets::new(lab.world.total());
     let mut truths = Vec::new();
     for (frame, shot) in drill.case.shots.iter().enumerate() {
         fit(lab, drill.size(frame))?;
         let truth = lab.truth(shot)?;
-        sets.push_items(&truth.images().items);
+        sets.push_items(&truth.images().visible_items());
         truths.push(truth);
     }
     Ok((truths, Arc::new(sets)))
@@ -277,7 +277,7 @@ fn measure(
         row.margin.join(seen);
         let mut pixels = std::collections::HashMap::<u32, u64>::new();
         let images = truths[frame].images();
-        let items = images.items.iter().filter(|item| **item != crate::metrics::NO_ITEM);
+        let items = images.items.iter().filter(|item| **item != crate::measures::metrics::NO_ITEM);
         items.for_each(|item| *pixels.entry(*item).or_default() += 1);
         row.fewest_pixels = row.fewest_pixels.into_iter().chain(pixels.into_values().min()).min();
     }

@@ -2,7 +2,7 @@
 
 use super::{Place, Plan, Ran, Table};
 use crate::compare::{ratio, Bootstrap};
-use crate::grid::Grid;
+use crate::results::grid::Grid;
 use crate::results::Method;
 
 /// What a method's times should be. All are judged for each scene and row.

@@ -1,10 +1,10 @@
 //! What stands in a table's cells: a number of a method's results or of a warp's errors, and how it is written.
 
 use super::{Place, Ran};
-use crate::grid::milliseconds;
-use crate::metrics::DepthErrors;
+use crate::measures::metrics::DepthErrors;
+use crate::measures::stats;
+use crate::results::grid::milliseconds;
 use crate::results::Method;
-use crate::stats;
 use shaders::Stage;
 
 /// What a cell holds.

@@ -14,6 +14,7 @@ mod print;
 #[cfg(test)]
 mod tests;
 mod tog;
+pub mod warp_errors;
 mod woc;
 
 pub use goals::Goals;
@@ -21,9 +22,9 @@ pub use measure::{Measure, Stages};
 pub use plan::{Chosen, Place, Plan, PlannedRun};
 pub use print::text;
 
-use crate::metrics::DepthErrors;
+use crate::measures::metrics::DepthErrors;
 use crate::results::Results;
-use crate::session::SessionOptions;
+use crate::run::session::SessionOptions;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 

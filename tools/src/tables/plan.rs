@@ -1,7 +1,7 @@
 //! What a table runs: its places, filled with methods and warps as far as there are any, gathered into runs.
 
 use super::{Change, Column, Table, Variant};
-use crate::cli::parse_setting;
+use crate::run::methods::parse_setting;
 use anyhow::{bail, Context, Result};
 use culling::{warp, Entry, Options};
 

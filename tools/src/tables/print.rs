@@ -4,7 +4,7 @@
 use super::goals::goals_text;
 use super::measure::decimal;
 use super::{Column, Measure, Paper, PaperScene, Place, Plan, Published, Ran, Ratio, Table};
-use crate::grid::{clipped, Grid};
+use crate::results::grid::{clipped, Grid};
 use crate::results::Results;
 
 /// The table of some runs: by scene, those of the plan. Fits 120 columns.

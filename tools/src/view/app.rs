@@ -7,12 +7,12 @@ use super::controls::{Command, Controls};
 use super::keys::{Input, Step};
 use super::lab::Lab;
 use super::text::Text;
+use super::ViewOptions;
 use super::{hud, saved, LONGEST_STEP, SCRIPTED_FRAME_S};
-use crate::cli::ViewArgs;
-use crate::commands::say;
-use crate::session::SessionOptions;
+use crate::results::output::say;
+use crate::run::capture::{self, CaptureOrder};
+use crate::run::session::SessionOptions;
 use anyhow::{anyhow, Context, Result};
-use culling::{Entry, Options};
 use engine::{Format, Gpu, GpuOptions, Image, Panel, Shown};
 use scenes::{CameraPath, Scene, Shot};
 use std::collections::VecDeque;
@@ -33,10 +33,9 @@ struct Stage {
 }
 
 /// The program while its window is open.
-pub struct App<'a> {
-    arguments: &'a ViewArgs,
-    options: SessionOptions,
-    methods: Vec<(&'static Entry, Options)>,
+pub struct App {
+    wish: ViewOptions,
+    capture: Option<CaptureOrder>,
     script: VecDeque<Step>,
     /// Until it is on a device.
     scene: Option<Scene>,
@@ -57,20 +56,13 @@ pub struct App<'a> {
     failed: Option<anyhow::Error>,
 }
 
-impl<'a> App<'a> {
+impl App {
     /// A program whose window is not open yet.
-    pub fn new(
-        arguments: &'a ViewArgs,
-        options: SessionOptions,
-        scene: Scene,
-        methods: Vec<(&'static Entry, Options)>,
-        script: Vec<Step>,
-    ) -> Self {
+    pub fn new(wish: ViewOptions, scene: Scene, capture: Option<CaptureOrder>) -> Self {
         App {
-            arguments,
-            options,
-            methods,
-            script: script.into(),
+            script: wish.keys.clone().unwrap_or_default().into(),
+            wish,
+            capture,
             scene: Some(scene),
             stage: None,
             window: None,
@@ -108,19 +100,14 @@ impl<'a> App<'a> {
         }
     }
 
-    /// True if nobody watches: time goes on evenly, and the window closes by itself.
-    fn is_scripted(&self) -> bool {
-        self.arguments.keys.is_some() || self.arguments.screenshot.is_some()
-    }
-
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
-        let [width, height] = self.options.size;
+        let [width, height] = self.wish.session.size;
         let attributes = Window::default_attributes()
-            .with_title(format!("sightline: {}", self.options.scene))
+            .with_title(format!("sightline: {}", self.wish.session.scene))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = event_loop.create_window(attributes).context("the window system gives no window")?;
         self.window = Some(Arc::new(window));
-        self.start(self.arguments.device.gpu())
+        self.start(self.wish.gpu.clone())
     }
 
     /// Opens a device and puts the scene on it.
@@ -129,19 +116,20 @@ impl<'a> App<'a> {
         let gpu = Gpu::open(&GpuOptions { windows: true, ..options })?;
         let mut shown = engine::Window::new(&gpu, window.clone())?;
         let wanted = <[u32; 2]>::from(window.inner_size());
-        let size = shown.size(wanted)?.unwrap_or(self.options.size);
+        let size = shown.size(wanted)?.unwrap_or(self.wish.session.size);
         let mut black = Image::new(&gpu, "view.black", Format::Colour, size)?;
         black.write(&vec![[0; 4]; (size[0] * size[1]) as usize])?;
         let loading = Text::of(&["loading ...".to_owned()], self.scale());
         let panels: Vec<Panel<'_>> = loading.iter().map(|text| panel(text, [MARGIN; 2])).collect();
         shown.show(&black, &panels, wanted)?;
         let scene = self.scene.take().context("the scene is gone")?;
-        let options = SessionOptions { size, ..self.options.clone() };
-        let lab = Lab::new(&gpu, scene, options, self.methods.clone())?;
+        let options = SessionOptions { size, ..self.wish.session.clone() };
+        let lab = Lab::new(&gpu, scene, options, self.wish.methods.clone())?;
         if self.controls.is_none() {
             let first = lab.session.path().sample(0, lab.session.frames());
             self.seconds = first.seconds;
-            self.controls = Some(Controls::new(FlyCamera::new(&lab.session.scene, &first.pose), self.methods.len()));
+            self.controls =
+                Some(Controls::new(FlyCamera::new(&lab.session.scene, &first.pose), self.wish.methods.len()));
         }
         self.stage = Some(Stage { shown, lab });
         Ok(())
@@ -150,7 +138,7 @@ impl<'a> App<'a> {
     /// Gives the device back and goes on with another one, or the same anew.
     fn change_device(&mut self, device: Option<String>) -> Result<()> {
         self.give_back()?;
-        let options = self.arguments.device.gpu();
+        let options = self.wish.gpu.clone();
         self.start(GpuOptions { device: device.or(options.device.clone()), ..options })
     }
 
@@ -176,7 +164,7 @@ impl<'a> App<'a> {
     /// One frame: the next step of the script, the camera, the picture, and the window.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         self.next_step(event_loop)?;
-        let scripted = self.is_scripted();
+        let scripted = self.wish.is_scripted();
         let (Some(stage), Some(controls), Some(window)) = (&mut self.stage, &mut self.controls, &self.window) else {
             return Ok(());
         };
@@ -197,7 +185,9 @@ impl<'a> App<'a> {
         if controls.recording {
             self.recorded.push(shot);
         }
-        stage.lab.frame(controls, &shot)?;
+        let gpu = stage.lab.session.gpu.clone();
+        let lab = &mut stage.lab;
+        capture::around(&mut self.capture, &gpu, (self.frames as usize, "view"), || lab.frame(controls, &shot))?;
         let texts = texts(&stage.lab, controls, &self.told, size, window.scale_factor());
         let panels: Vec<Panel<'_>> = texts.iter().map(|(text, at)| panel(text, *at)).collect();
         self.rests = stage.shown.show(stage.lab.picture(), &panels, wanted)? != Shown::Yes;
@@ -207,7 +197,7 @@ impl<'a> App<'a> {
     /// Counts a frame; a run that nobody watches ends with its last one.
     fn count(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         self.frames += 1;
-        if self.is_scripted() && self.frames >= self.arguments.scene.frames {
+        if self.wish.is_scripted() && self.frames as usize >= self.wish.session.frames {
             if !self.script.is_empty() {
                 return Err(anyhow!(
                     "--keys: {} steps were left after {} frames; give more --frames",
@@ -215,8 +205,8 @@ impl<'a> App<'a> {
                     self.frames
                 ));
             }
-            if let Some(file) = &self.arguments.screenshot {
-                self.screenshot(Some(file))?;
+            if let Some(file) = self.wish.screenshot.clone() {
+                self.screenshot(Some(&file))?;
             }
             event_loop.exit();
         }
@@ -245,7 +235,7 @@ impl<'a> App<'a> {
                 self.stage.as_mut().map_or(Ok(()), |stage| stage.shown.make_surface_again())?;
             }
             (Some(Step::Screenshot(name)), _) => {
-                let file = self.arguments.out.join(name);
+                let file = self.wish.out.join(name);
                 self.screenshot(Some(&file))?;
             }
         }
@@ -268,7 +258,7 @@ impl<'a> App<'a> {
             Some(Command::SaveCamera) => {
                 let stage = self.stage.as_ref().context("there is no scene yet")?;
                 let shot = flown(&stage.lab, controls, self.path_frame, self.seconds);
-                let file = saved::path(&self.arguments.out, "camera", &[shot])?;
+                let file = saved::path(&self.wish.out, "camera", &[shot])?;
                 self.tell(format!("{}: give it to --path", file.display()))
             }
             Some(Command::SaveRecording) => {
@@ -276,7 +266,7 @@ impl<'a> App<'a> {
                 if shots.is_empty() {
                     return self.tell("nothing was recorded".to_owned());
                 }
-                let file = saved::path(&self.arguments.out, "recording", &shots)?;
+                let file = saved::path(&self.wish.out, "recording", &shots)?;
                 self.tell(format!(
                     "{}: {} frames; give it to --path, with --frames {}",
                     file.display(),
@@ -289,7 +279,7 @@ impl<'a> App<'a> {
 
     fn screenshot(&mut self, name: Option<&Path>) -> Result<()> {
         let stage = self.stage.as_ref().context("nothing is shown yet")?;
-        let file = saved::screenshot(&self.arguments.out, name, stage.shown.read_shown()?)?;
+        let file = saved::screenshot(&self.wish.out, name, stage.shown.read_shown()?)?;
         self.tell(file.display().to_string())
     }
 

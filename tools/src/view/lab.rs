@@ -2,11 +2,11 @@
 
 use super::controls::{Controls, Show};
 use super::pictures::{self, Warping};
-use crate::metrics::{compare, FrameError, FrameImages, Truth};
-use crate::png_out::Picture;
+use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
+use crate::pictures::png_out::Picture;
+use crate::run::session::{Session, SessionOptions};
+use crate::run::truth::draw_all_of;
 use crate::run::{Contender, Watched};
-use crate::session::{Session, SessionOptions};
-use crate::truth::draw_all_of;
 use anyhow::{Context, Result};
 use culling::{drawn_objects, Drawn, Entry, Options, View, VisibleSets};
 use engine::{Format, FrameReport, Gpu, Image};
@@ -171,7 +171,7 @@ impl Lab {
             Show::FalsePositives => pictures::false_positives(self, &eye, &images),
             _ => pictures::of(self, controls, &eye, &images)?,
         };
-        crate::boxes_view::draw_view(&mut picture, &self.session, &eye, seen);
+        crate::pictures::boxes_view::draw_view(&mut picture, &self.session, &eye, seen);
         Ok(picture)
     }
 
@@ -192,8 +192,8 @@ impl Lab {
             return Ok(());
         }
         let visible = if is_ideal {
-            let mut sets = VisibleSets::new(self.session.world.len());
-            sets.push_items(&draw_all_of(&self.session, view)?.items);
+            let mut sets = VisibleSets::new(self.session.world.total());
+            sets.push_items(&draw_all_of(&self.session, view)?.visible_items());
             Some(Arc::new(sets))
         } else {
             None
@@ -228,7 +228,7 @@ impl Lab {
 
     fn compare(&mut self, view: &View, images: &FrameImages) -> Result<()> {
         let truth =
-            Truth::new(draw_all_of(&self.session, view).context("drawing the truth")?, self.session.world.len())?;
+            Truth::new(draw_all_of(&self.session, view).context("drawing the truth")?, self.session.world.total())?;
         let drawn = self.ran.as_ref().and_then(|ran| ran.drawn.as_ref()).context("what was drawn is not known")?;
         self.known.error = Some(compare(&truth, images, &drawn.objects)?);
         self.truth = Some(truth);

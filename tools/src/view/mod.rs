@@ -13,9 +13,14 @@ mod pictures;
 mod saved;
 mod text;
 
-use crate::cli::{parse_methods, ViewArgs};
-use anyhow::{anyhow, Context, Result};
+use crate::run::bench::make_folder;
+use crate::run::capture::CaptureOrder;
+use crate::run::session::SessionOptions;
+use anyhow::{anyhow, bail, Context, Result};
 use app::App;
+use culling::{Entry, Options};
+use engine::GpuOptions;
+use std::path::PathBuf;
 use std::time::Duration;
 use winit::event_loop::EventLoop;
 
@@ -24,18 +29,49 @@ const SCRIPTED_FRAME_S: f64 = 1.0 / 60.0;
 /// The longest that a slow frame may carry the camera on.
 const LONGEST_STEP: Duration = Duration::from_millis(250);
 
+/// What a window is opened with.
+#[derive(Clone, Debug)]
+pub struct ViewOptions {
+    /// Scene, path, frames, and the window's first size.
+    pub session: SessionOptions,
+    /// The first device.
+    pub gpu: GpuOptions,
+    /// Methods in the order of the Tab key.
+    pub methods: Vec<(&'static Entry, Options)>,
+    /// Keys that press themselves, one step a frame; the window closes after the session's frames.
+    pub keys: Option<Vec<keys::Step>>,
+    /// Where to keep what is shown in the last frame; the window closes after it.
+    pub screenshot: Option<PathBuf>,
+    /// The frame of the window to capture with RenderDoc.
+    pub capture: Option<usize>,
+    /// Folder of what keys save.
+    pub out: PathBuf,
+}
+
+impl ViewOptions {
+    /// True if nobody watches: time goes on evenly, and the window closes by itself.
+    fn is_scripted(&self) -> bool {
+        self.keys.is_some() || self.screenshot.is_some()
+    }
+}
+
 /// Opens the window and stays until it is closed.
 ///
 /// # Errors
 /// No display, a device that shows nothing on it, or a scene or method that fails.
-pub fn run(arguments: &ViewArgs) -> Result<()> {
-    let methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
-    let script = keys::parse_steps(arguments.keys.as_deref().unwrap_or(""))?;
-    let options = arguments.scene.session()?;
+pub fn run(wish: ViewOptions) -> Result<()> {
+    let options = &wish.session;
     let scene_options = scenes::SceneOptions { scale: options.scale, seed: options.seed, detail: options.detail };
     let event_loop = event_loop()?;
     let scene = scenes::open(&options.scene, &scene_options)?;
-    let mut app = App::new(arguments, options, scene, methods, script);
+    if wish.is_scripted() && wish.capture.is_some_and(|frame| frame >= wish.session.frames) {
+        bail!("--capture: the window has only {} frames, counted from 0", wish.session.frames);
+    }
+    let order = wish.capture.map(|frame| {
+        make_folder(&wish.out)?;
+        CaptureOrder::new(frame, &wish.out)
+    });
+    let mut app = App::new(wish, scene, order.transpose()?);
     event_loop.run_app(&mut app).context("the window system stopped")?;
     app.outcome()
 }

@@ -2,12 +2,12 @@
 
 use super::controls::{Controls, Show};
 use super::lab::Lab;
-use crate::boxes_view::{self, dimmed};
-use crate::lines::{corners, draw_edges, Pen};
-use crate::metrics::FrameImages;
-use crate::png_out::{DepthScale, Picture};
+use crate::measures::metrics::FrameImages;
+use crate::pictures::boxes_view::{self, dimmed};
+use crate::pictures::lines::{corners, draw_edges, Pen};
+use crate::pictures::png_out::{DepthScale, Picture};
+use crate::pictures::warp_view::Warped;
 use crate::run::fragment_counts;
-use crate::warp_view::Warped;
 use anyhow::{Context, Result};
 use culling::farthest::{self, hom, FarthestMap, MapKind, Structure};
 use culling::warp::{Settings, Warp, OPTIONS};

@@ -1,8 +1,8 @@
 //! What `view` writes: cameras and recordings as paths, and screenshots.
 
-use crate::bench::make_folder;
-use crate::files::write_atomically;
-use crate::png_out::Picture;
+use crate::pictures::png_out::Picture;
+use crate::results::files::write_atomically;
+use crate::run::bench::make_folder;
 use anyhow::{Context, Result};
 use scenes::{record_shots, Shot};
 use std::path::{Path, PathBuf};

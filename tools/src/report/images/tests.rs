@@ -1,8 +1,8 @@
 //! Pictures are made small without losing a wrong pixel, and only the worst frame is kept.
 
 use super::*;
-use crate::bench::Seen;
-use crate::metrics::{compare, Truth};
+use crate::measures::metrics::{compare, Truth};
+use crate::run::bench::Seen;
 use crate::run::Measured;
 use culling::{Drawn, Work};
 
@@ -18,10 +18,11 @@ fn frame(holes: usize) -> FrameImages {
         colour: vec![[200, 100, 40, 255]; pixels],
         depth: vec![0.5; pixels],
         items: vec![0; pixels],
+        seen_through: vec![],
     };
     images.colour[..holes].fill([0, 0, 0, 255]);
     images.depth[..holes].fill(0.0);
-    images.items[..holes].fill(crate::metrics::NO_ITEM);
+    images.items[..holes].fill(crate::measures::metrics::NO_ITEM);
     images
 }
 

@@ -15,7 +15,7 @@ const REST: Duration = Duration::from_millis(50);
 /// Pixels of a wheel's notch where it reports pixels.
 const NOTCH_PX: f64 = 40.0;
 
-impl ApplicationHandler for App<'_> {
+impl ApplicationHandler for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.window.is_none() {
             let opened = self.open(event_loop);
@@ -69,7 +69,7 @@ impl ApplicationHandler for App<'_> {
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let Some(window) = &self.window else { return };
-        if self.out_of_sight && !self.is_scripted() {
+        if self.out_of_sight && !self.wish.is_scripted() {
             // Nobody sees it: the next event wakes us.
             self.last = None;
             event_loop.set_control_flow(ControlFlow::Wait);
@@ -83,7 +83,7 @@ impl ApplicationHandler for App<'_> {
     }
 }
 
-impl App<'_> {
+impl App {
     /// The mouse looks around as long as a button is held.
     fn drag(&mut self, on: bool) {
         let Some(window) = self.window.as_ref().filter(|_| self.dragging != on) else { return };

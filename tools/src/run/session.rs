@@ -1,0 +1,167 @@
+//! A scene on a device with a camera path: what every command works on.
+
+use crate::run::targets::Targets;
+use anyhow::{bail, Context, Result};
+use culling::{Shading, View, World};
+use engine::{Gpu, GpuOptions};
+use scenes::{CameraPath, Scene, SceneOptions, Shot};
+use std::path::{Path, PathBuf};
+
+/// What a session is opened with.
+#[derive(Clone, Debug)]
+pub struct SessionOptions {
+    /// Scene name, or a .glb or .gltf file.
+    pub scene: String,
+    /// Multiple of a procedural scene's standard number of objects.
+    pub scale: f64,
+    /// Seed of a procedural scene.
+    pub seed: u64,
+    /// How finely a procedural scene's meshes are divided.
+    pub detail: u32,
+    /// Path name or .json file; none takes the scene's default.
+    pub path: Option<String>,
+    /// How many times the path's way the camera goes in a run.
+    pub speed: f64,
+    /// Spread the whole way over the run, however few frames that has.
+    pub whole_path: bool,
+    /// Frames of a run, > 0.
+    pub frames: usize,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What is drawn of materials; none takes what the scene has.
+    pub shading: Option<Shading>,
+}
+
+impl Default for SessionOptions {
+    fn default() -> Self {
+        SessionOptions {
+            scene: "city-block".to_owned(),
+            scale: 1.0,
+            seed: 1,
+            detail: SceneOptions::default().detail,
+            path: None,
+            speed: 1.0,
+            whole_path: false,
+            frames: 30,
+            size: [1280, 720],
+            shading: None,
+        }
+    }
+}
+
+/// A scene on a device with a camera path.
+pub struct Session {
+    /// The device.
+    pub gpu: Gpu,
+    /// The scene as loaded.
+    pub scene: Scene,
+    /// The scene on the device.
+    pub world: World,
+    /// What frames are drawn to.
+    pub targets: Targets,
+    path: CameraPath,
+    options: SessionOptions,
+}
+
+impl Session {
+    /// Opens a device, then a scene on it.
+    pub fn open(gpu_options: &GpuOptions, options: SessionOptions) -> Result<Self> {
+        Self::on(&Gpu::open(gpu_options)?, options)
+    }
+
+    /// Opens a scene on a device.
+    pub fn on(gpu: &Gpu, options: SessionOptions) -> Result<Self> {
+        let SessionOptions { scale, seed, detail, .. } = options;
+        let scene = scenes::open(&options.scene, &SceneOptions { scale, seed, detail })?;
+        Self::with_scene(gpu, scene, options)
+    }
+
+    /// Puts a scene that is already there on a device. `options.scene` is not looked at.
+    pub fn with_scene(gpu: &Gpu, scene: Scene, options: SessionOptions) -> Result<Self> {
+        if options.frames == 0 {
+            bail!("a run needs at least one frame: give --frames a number above 0");
+        }
+        let path = match options.path.as_deref() {
+            Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), options.speed)?,
+            name => CameraPath::named(&scene, name, options.speed)?,
+        };
+        let path = if options.whole_path { path.whole() } else { path };
+        let targets = Targets::new(gpu, options.size)?;
+        let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
+        let world = World::shaded(gpu, &scene, shading).with_context(|| format!("scene '{}'", scene.name))?;
+        Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })
+    }
+
+    /// What the session was opened with.
+    pub fn options(&self) -> &SessionOptions {
+        &self.options
+    }
+
+    /// The camera path.
+    pub fn path(&self) -> &CameraPath {
+        &self.path
+    }
+
+    /// Frames of a run.
+    pub fn frames(&self) -> usize {
+        self.options.frames
+    }
+
+    /// Puts moving objects where they are in a frame, and gives what the frame looks through.
+    pub fn look(&mut self, frame: usize) -> Result<View> {
+        let shot = self.path.sample(frame, self.options.frames);
+        self.look_through(&shot, frame)
+    }
+
+    /// The same through a camera that is on no path; `frame` is what the view is numbered with.
+    pub fn look_through(&mut self, shot: &Shot, frame: usize) -> Result<View> {
+        self.world.set_time(&self.scene, shot.seconds)?;
+        Ok(View::new(shot, self.options.size, frame, self.gpu.snap_px()))
+    }
+
+    /// Draws pictures of another size from now on.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        if size != self.options.size {
+            self.targets = Targets::new(&self.gpu, size)?;
+            self.options.size = size;
+        }
+        Ok(())
+    }
+
+    /// SHA-256 of the scene as loaded, in hexadecimal.
+    pub fn scene_hash(&self) -> String {
+        self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// What is drawn of materials.
+    pub fn shading(&self) -> Shading {
+        self.options.shading.unwrap_or_else(|| Shading::of(&self.scene))
+    }
+
+    /// Says in full what pictures of this run depend on: the key of its visible sets.
+    pub fn key(&self) -> String {
+        let hash = self.scene_hash();
+        let [width, height] = self.options.size;
+        let device = self.gpu.info().map(|info| info.cache_key.clone()).unwrap_or_default();
+        let shaders: String = shaders::STAGES
+            .iter()
+            .filter(|stage| stage.name.starts_with("draw/"))
+            .flat_map(|stage| stage.modules)
+            .map(|module| format!("{:x}", module.spirv.len()))
+            .collect();
+        format!(
+            "scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders} shading={:?}",
+            self.path.describe(),
+            self.options.frames,
+            self.shading()
+        )
+    }
+}
+
+/// Where caches lie: `SIGHTLINE_CACHE`, else `XDG_CACHE_HOME/sightline`, else `~/.cache/sightline`, else none.
+pub fn cache_folder() -> Option<PathBuf> {
+    let named = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    named("SIGHTLINE_CACHE")
+        .or_else(|| named("XDG_CACHE_HOME").map(|folder| folder.join("sightline")))
+        .or_else(|| named("HOME").map(|folder| folder.join(".cache/sightline")))
+}
