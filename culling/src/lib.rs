@@ -15,8 +15,10 @@ mod methods;
 pub mod none;
 mod options;
 pub mod pack;
+pub mod queries;
 pub mod reference;
 pub mod roc;
+pub mod translucent;
 pub mod warp;
 pub mod woc;
 pub mod world;
@@ -27,7 +29,7 @@ pub use methods::{default_method, find, Entry, METHODS};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;
 pub use reference::VisibleSets;
-pub use world::{drawn_objects, Drawn, View, World};
+pub use world::{drawn_objects, Drawn, Shading, View, World};
 
 /// What culling calls return.
 pub type Result<T> = std::result::Result<T, Error>;

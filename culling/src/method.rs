@@ -28,6 +28,12 @@ impl std::fmt::Display for Guarantee {
 pub struct Work {
     /// Occlusion queries issued.
     pub queries: u64,
+    /// Tests of a box against a plane of the view volume, on the host.
+    pub plane_tests: u64,
+    /// Changes between drawing and testing: runs of one kind.
+    pub state_changes: u64,
+    /// Times that the host waited for answers.
+    pub waits: u64,
     /// Boxes rasterised.
     pub boxes: u64,
     /// Rays cast.

@@ -1,6 +1,6 @@
 //! The list of methods. One line a method.
 
-use crate::{auto, eovc, farthest, frustum, hzb, none, reference, roc, woc};
+use crate::{auto, eovc, farthest, frustum, hzb, none, queries, reference, roc, woc};
 use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
 
 /// A method that can be chosen.
@@ -37,6 +37,14 @@ pub const METHODS: &[Entry] = &[
         guarantee: Guarantee::Exact,
         options: frustum::OPTIONS,
         make: frustum::make,
+    },
+    Entry {
+        id: "frustum-bvh",
+        title: "hierarchical view-frustum culling, with plane masking and coherence",
+        source: "Zachmann 2008, VFC",
+        guarantee: Guarantee::Exact,
+        options: frustum::bvh::OPTIONS,
+        make: frustum::bvh::make,
     },
     Entry {
         id: "hzb",
@@ -109,6 +117,46 @@ pub const METHODS: &[Entry] = &[
         guarantee: Guarantee::Exact,
         options: eovc::OPTIONS,
         make: eovc::make,
+    },
+    Entry {
+        id: "query-wait",
+        title: "occlusion queries in batches, each waited for",
+        source: "GPU Gems 29.3; Zachmann 2008, draw-and-wait",
+        guarantee: Guarantee::Exact,
+        options: queries::wait::OPTIONS,
+        make: queries::wait::make,
+    },
+    Entry {
+        id: "query-lag",
+        title: "occlusion queries that are read one frame later",
+        source: "GPU Gems 29.4",
+        guarantee: Guarantee::Approximate(queries::lag::LAGS),
+        options: queries::lag::OPTIONS,
+        make: queries::lag::make,
+    },
+    Entry {
+        id: "chc",
+        title: "coherent hierarchical culling",
+        source: "Zachmann 2008; Bittner et al. 2004",
+        guarantee: Guarantee::Exact,
+        options: queries::chc::OPTIONS,
+        make: queries::chc::make,
+    },
+    Entry {
+        id: "chc++",
+        title: "coherent hierarchical culling with queues, multiqueries and tight bounds",
+        source: "Zachmann 2008; Mattausch et al. 2008",
+        guarantee: Guarantee::Exact,
+        options: queries::chcpp::OPTIONS,
+        make: queries::chcpp::make,
+    },
+    Entry {
+        id: "nohc",
+        title: "hierarchical culling that queries where a fitted cost model says that it pays",
+        source: "Kim 2015, V; Guthe et al. 2006",
+        guarantee: Guarantee::Exact,
+        options: queries::nohc::OPTIONS,
+        make: queries::nohc::make,
     },
     Entry {
         id: "auto",

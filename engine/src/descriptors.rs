@@ -34,7 +34,8 @@ struct Room {
     descriptors: [u32; KINDS.len()],
 }
 
-const KINDS: [BindingKind; 3] = [BindingKind::StorageBuffer, BindingKind::SampledImage, BindingKind::StorageImage];
+const KINDS: [BindingKind; 4] =
+    [BindingKind::StorageBuffer, BindingKind::SampledImage, BindingKind::GatheredImage, BindingKind::StorageImage];
 
 impl Room {
     /// What some stages take, one set each.

@@ -33,13 +33,15 @@ pub enum Extra {
     Timestamps,
     /// The device counts primitives and fragments.
     PipelineStatistics,
+    /// Occlusion queries count samples.
+    OcclusionQueryPrecise,
     /// Stages and resources have names in captures and messages.
     DebugUtils,
 }
 
 impl Extra {
     /// All of them.
-    pub const ALL: [Extra; 9] = [
+    pub const ALL: [Extra; 10] = [
         Extra::DrawIndirectCount,
         Extra::MultiDrawIndirect,
         Extra::PushDescriptor,
@@ -48,6 +50,7 @@ impl Extra {
         Extra::MappedMemory,
         Extra::Timestamps,
         Extra::PipelineStatistics,
+        Extra::OcclusionQueryPrecise,
         Extra::DebugUtils,
     ];
 
@@ -62,6 +65,7 @@ impl Extra {
             Extra::MappedMemory => "mappedDeviceMemory",
             Extra::Timestamps => "timestamps",
             Extra::PipelineStatistics => "pipelineStatisticsQuery",
+            Extra::OcclusionQueryPrecise => "occlusionQueryPrecise",
             Extra::DebugUtils => "VK_EXT_debug_utils",
         }
     }
@@ -79,6 +83,9 @@ impl Extra {
             Extra::Timestamps => "without it frames are timed and stages are not",
             Extra::PipelineStatistics => {
                 "without it a frame has no counts of primitives and fragments (bench does not use them)"
+            }
+            Extra::OcclusionQueryPrecise => {
+                "without it queries say whether a box shows, not by how much: min-pixels above 1 is refused"
             }
             Extra::DebugUtils => "without it stages and resources have no names in captures and messages",
         }
@@ -155,6 +162,11 @@ pub(crate) fn find(
         ("scalarBlockLayout", on(v12.scalar_block_layout), "every stage: buffers lie as their Rust structs do"),
         ("dynamicRendering", on(v13.dynamic_rendering), "every drawing and clear"),
         ("synchronization2", on(v13.synchronization2), "every barrier and submission"),
+        (
+            "shaderDemoteToHelperInvocation",
+            on(v13.shader_demote_to_helper_invocation),
+            "masked surfaces, whose fragments are discarded",
+        ),
         ("maintenance4", on(v13.maintenance4), "prefix sums, whose work group is one subgroup of the device's size"),
         ("subgroup arithmetic", adds, "prefix sums, which put lists in order"),
     ];
@@ -175,6 +187,7 @@ pub(crate) fn find(
         Extra::MappedMemory => memory.memory_types_as_slice().iter().any(|one| one.property_flags.contains(MAPPED)),
         Extra::Timestamps => timestamp_bits > 0,
         Extra::PipelineStatistics => on(core.pipeline_statistics_query),
+        Extra::OcclusionQueryPrecise => on(core.occlusion_query_precise),
         // An extension of the instance, which comes from the loader or a layer: `gpu.rs` asks whether it is there.
         Extra::DebugUtils => true,
     };

@@ -15,6 +15,10 @@ use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+mod occlusion;
+
+pub use occlusion::{OcclusionQueries, Queried};
+
 /// What a stage cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageTime {
@@ -314,16 +318,21 @@ impl Frame {
     /// Runs what was recorded, waits, and reads a buffer: a read-back in the middle of a frame. What that takes beyond the
     /// stages themselves is a row of its own, `frame/read_back`, so that the stall shows.
     pub fn read<T: Pod>(&mut self, buffer: &Buffer<T>) -> Result<Vec<T>> {
+        self.stalled("frame/read_back", |_| buffer.read())
+    }
+
+    /// Waits for what was recorded and reads something of it; a stall, with a row of its own beside the stages' times.
+    fn stalled<T>(&mut self, label: &str, read: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         let (first, since) = (self.report.stages.len(), Instant::now());
         self.submit_and_wait()?;
-        let data = buffer.read()?;
+        let data = read(self)?;
         self.host_since = Instant::now();
         if self.timer.is_none() {
             return Ok(data);
         }
         let stages: f64 = self.report.stages[first..].iter().map(|stage| stage.ms).sum();
         let stall = (since.elapsed().as_secs_f64() * 1e3 - stages).max(0.0);
-        self.report.stages.push(StageTime { label: self.recorder.label("frame/read_back"), ms: stall });
+        self.report.stages.push(StageTime { label: self.recorder.label(label), ms: stall });
         Ok(data)
     }
 

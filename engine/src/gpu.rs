@@ -188,6 +188,7 @@ fn create_device(
         .multi_draw_indirect(extras.has(Extra::MultiDrawIndirect))
         .draw_indirect_first_instance(true)
         .fragment_stores_and_atomics(true)
+        .occlusion_query_precise(extras.has(Extra::OcclusionQueryPrecise))
         .pipeline_statistics_query(extras.has(Extra::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
         .draw_indirect_count(extras.has(Extra::DrawIndirectCount))
@@ -197,6 +198,7 @@ fn create_device(
         .dynamic_rendering(true)
         .synchronization2(true)
         .maintenance4(true)
+        .shader_demote_to_helper_invocation(true)
         .subgroup_size_control(extras.has(Extra::SubgroupSizeControl))
         .compute_full_subgroups(extras.has(Extra::SubgroupSizeControl));
     let swapchain = windows.then_some(ash::khr::swapchain::NAME.as_ptr());

@@ -4,7 +4,7 @@ use crate::barriers::{Barrier, Point};
 use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
-use crate::recorder::{IndexedIndirect, Op, Recorded};
+use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
 use crate::target::Target;
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::{full_barrier, whole_image};
@@ -12,6 +12,11 @@ use crate::{Error, Result};
 use ash::vk;
 use shaders::{Bound, BoundStage};
 use vk::Handle;
+
+mod queried;
+
+/// Bytes of an indexed indirect command.
+const COMMAND_BYTES: u32 = 20;
 
 /// How a submission is run.
 pub(crate) struct How<'a> {
@@ -96,7 +101,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<
 fn assert_counts_do_not_lapse(ops: &[Recorded]) {
     let mut counted = false;
     for recorded in ops {
-        if let Op::Draw { draw, .. } = &recorded.op {
+        if let Op::Draw { draw, .. } | Op::Query { draw, .. } = &recorded.op {
             assert!(
                 draw.count.is_some() || !counted,
                 "{}: a draw without a count after one with a count",
@@ -166,6 +171,9 @@ impl Recording<'_> {
                 unsafe { device.cmd_dispatch_indirect(self.commands, vk::Buffer::from_raw(groups.raw), groups.offset) };
             }
             Op::Draw { stage, draw, target } => self.draw(stage, draw, target)?,
+            Op::Query { stage, draw, queries, first_query, target } => {
+                self.query(stage, draw, (queries, *first_query), target)?;
+            }
             Op::Clear { target } => self.rendering(target, vk::AttachmentLoadOp::CLEAR, || ()),
             Op::Fill { buffer, value } => {
                 let (raw, offset, size) = range(buffer);
@@ -192,6 +200,38 @@ impl Recording<'_> {
     }
 
     fn draw(&self, stage: &BoundStage, draw: &IndexedIndirect, target: &Target) -> Result<()> {
+        let device = &self.vulkan.device;
+        let (commands, commands_at, _) = range(&draw.commands);
+        // SAFETY: inside a rendering with pipeline and buffers bound; commands and count are alive and in range.
+        self.draw_with(stage, draw, target, || unsafe {
+            match draw.count {
+                Some(count) => device.cmd_draw_indexed_indirect_count(
+                    self.commands,
+                    commands,
+                    commands_at,
+                    vk::Buffer::from_raw(count.raw),
+                    count.offset,
+                    draw.max_draws,
+                    COMMAND_BYTES,
+                ),
+                None => {
+                    for (first, count) in pieces(draw.max_draws, self.vulkan.info.most_draws) {
+                        let at = commands_at + u64::from(first) * u64::from(COMMAND_BYTES);
+                        device.cmd_draw_indexed_indirect(self.commands, commands, at, count, COMMAND_BYTES);
+                    }
+                }
+            }
+        })
+    }
+
+    /// Runs `inside` in a rendering to the target, with the stage's pipeline and the draw's buffers bound.
+    fn draw_with(
+        &self,
+        stage: &BoundStage,
+        draw: &IndexedIndirect,
+        target: &Target,
+        inside: impl FnOnce(),
+    ) -> Result<()> {
         let colour = target.colour.map(|(_, format)| format);
         self.bind(
             stage,
@@ -199,16 +239,16 @@ impl Recording<'_> {
                 colour,
                 item: target.item.is_some(),
                 depth: self.vulkan.depth,
-                depth_write: !target.depth_read_only,
+                depth_write: !target.depth_read_only && draw.surface != Surface::Translucent,
                 strictly_nearer: target.strictly_nearer,
                 primitives: draw.primitives,
+                faces: draw.faces,
+                blended: draw.surface == Surface::Translucent,
             }),
         )?;
         let device = &self.vulkan.device;
         let (vertices, vertices_at, _) = range(&draw.vertices);
         let (indices, indices_at, _) = range(&draw.indices);
-        let (commands, commands_at, _) = range(&draw.commands);
-        let stride = 20;
         self.rendering(target, vk::AttachmentLoadOp::LOAD, || {
             // SAFETY: inside a rendering with the formats the pipeline was made for; buffers are alive and in range.
             unsafe {
@@ -218,24 +258,8 @@ impl Recording<'_> {
                     device.cmd_bind_vertex_buffers(self.commands, INSTANCE_BINDING, &[instances], &[at]);
                 }
                 device.cmd_bind_index_buffer(self.commands, indices, indices_at, vk::IndexType::UINT32);
-                match draw.count {
-                    Some(count) => device.cmd_draw_indexed_indirect_count(
-                        self.commands,
-                        commands,
-                        commands_at,
-                        vk::Buffer::from_raw(count.raw),
-                        count.offset,
-                        draw.max_draws,
-                        stride,
-                    ),
-                    None => {
-                        for (first, count) in pieces(draw.max_draws, self.vulkan.info.most_draws) {
-                            let at = commands_at + u64::from(first) * u64::from(stride);
-                            device.cmd_draw_indexed_indirect(self.commands, commands, at, count, stride);
-                        }
-                    }
-                }
             }
+            inside();
         });
         Ok(())
     }

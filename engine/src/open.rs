@@ -2,7 +2,8 @@
 
 use crate::features::Extra;
 use crate::{
-    Buffer, Format, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Result, Target, TimerMode,
+    Buffer, Faces, Format, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Result, Surface, Target,
+    TimerMode,
 };
 
 impl Gpu {
@@ -97,6 +98,8 @@ impl Check {
                 count: None,
                 max_draws: 1,
                 primitives: Primitives::Triangles,
+                faces: Faces::Both,
+                surface: Surface::Opaque,
             };
             frame.draw(shaders::engine::SpinPixels {}, draw, &self.target);
         }

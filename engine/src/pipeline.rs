@@ -5,7 +5,7 @@ use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
 use crate::names::Names;
-use crate::recorder::Primitives;
+use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
@@ -35,6 +35,9 @@ pub(crate) struct DrawState {
     pub(crate) depth_write: bool,
     pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
+    pub(crate) faces: Faces,
+    /// Colours are blended by their alpha.
+    pub(crate) blended: bool,
 }
 
 type Key = (&'static str, Vec<u32>, Option<DrawState>);
@@ -44,6 +47,8 @@ pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
     made_any: Mutex<bool>,
+    /// What gathered textures are read with.
+    sampler: vk::Sampler,
     cache: vk::PipelineCache,
     cache_file: Option<PathBuf>,
     info: AdapterInfo,
@@ -54,8 +59,17 @@ impl Pipelines {
     pub(crate) fn new(device: &ash::Device, info: &AdapterInfo, folder: Option<&Path>, names: &Names) -> Result<Self> {
         let cache_file = folder.map(|folder| pipeline_cache::file(folder, info));
         let cache = pipeline_cache::load(device, cache_file.as_deref())?;
+        // Nearest and clamped to the edge, as filled in; texels are gathered, never filtered.
+        let nearest = vk::SamplerCreateInfo::default()
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        // SAFETY: the device is alive; the info lives through the call.
+        let sampler = unsafe { device.create_sampler(&nearest, None) }.named("vkCreateSampler")?;
         names.give(cache, "pipelines");
+        names.give(sampler, "gathering");
         Ok(Pipelines {
+            sampler,
             made: Mutex::default(),
             layouts: Mutex::default(),
             made_any: Mutex::new(false),
@@ -103,15 +117,20 @@ impl Pipelines {
         }
         check_bindings(&self.info, info)?;
         let flags = stage_flags(info);
+        let samplers = [self.sampler];
         let bindings: Vec<_> = info
             .bindings
             .iter()
             .map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
+                let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(binding.binding)
                     .descriptor_type(descriptor_type(binding.kind))
                     .descriptor_count(1)
-                    .stage_flags(flags)
+                    .stage_flags(flags);
+                match binding.kind {
+                    BindingKind::GatheredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
             })
             .collect();
         let set_info =
@@ -208,6 +227,7 @@ impl Pipelines {
                 device.destroy_pipeline_layout(*layout, None);
                 device.destroy_descriptor_set_layout(*set, None);
             }
+            device.destroy_sampler(self.sampler, None);
             device.destroy_pipeline_cache(self.cache, None);
         }
     }
@@ -246,8 +266,13 @@ fn draw_pipeline(
         Primitives::Points => vk::PrimitiveTopology::POINT_LIST,
     });
     let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-    // No face culling: mirrored transforms and open meshes are common in what users bring.
-    let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).cull_mode(vk::CullModeFlags::NONE);
+    let raster = vk::PipelineRasterizationStateCreateInfo::default()
+        .line_width(1.0)
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .cull_mode(match state.faces {
+            Faces::Both => vk::CullModeFlags::NONE,
+            Faces::Front => vk::CullModeFlags::BACK,
+        });
     let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
@@ -259,10 +284,19 @@ fn draw_pipeline(
         .src_color_blend_factor(vk::BlendFactor::ONE)
         .dst_color_blend_factor(vk::BlendFactor::ONE)
         .color_blend_op(vk::BlendOp::ADD);
-    let (formats, blends): (Vec<_>, Vec<_>) = attachment_formats(state)
-        .into_iter()
-        .map(|format| (format, if state.colour == Some(Format::Heat) { add } else { replace }))
-        .unzip();
+    let over = add
+        .src_color_blend_factor(vk::BlendFactor::SRC_ALPHA)
+        .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .src_alpha_blend_factor(vk::BlendFactor::ONE)
+        .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+        .alpha_blend_op(vk::BlendOp::ADD);
+    let blend = match state.colour {
+        Some(Format::Heat) => add,
+        _ if state.blended => over,
+        _ => replace,
+    };
+    let formats = attachment_formats(state);
+    let blends = vec![blend; formats.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -370,6 +404,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::GatheredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
     }
 }

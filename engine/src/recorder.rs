@@ -1,6 +1,7 @@
 //! What a frame is before it becomes Vulkan: a list of stages with barriers between them. Plain data, readable as text.
 
 use crate::barriers::{Barrier, BarrierTracker, Point, Use};
+use crate::frame::OcclusionQueries;
 use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
@@ -15,6 +16,28 @@ pub enum Primitives {
     Lines,
     /// Points, one pixel large.
     Points,
+}
+
+/// Which sides of triangles show. Means nothing for lines and points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Faces {
+    /// Both.
+    #[default]
+    Both,
+    /// The front alone, where corners go round counter-clockwise on the screen.
+    Front,
+}
+
+/// What a surface does to what lies behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Hides it.
+    #[default]
+    Opaque,
+    /// Hides it where the fragment shader does not discard.
+    Masked,
+    /// Is blended over it by its alpha; never writes depth.
+    Translucent,
 }
 
 /// A multi-draw whose commands, and their number, lie on the GPU.
@@ -37,11 +60,14 @@ pub struct IndexedIndirect {
     pub max_draws: u32,
     /// How indices form primitives.
     pub primitives: Primitives,
+    /// Which sides show.
+    pub faces: Faces,
+    /// What it does to what lies behind it.
+    pub surface: Surface,
 }
 
 /// One recorded step.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a frame has some dozens of steps, most of them large")]
 pub enum Op {
     /// A compute stage over a grid of work groups.
     Dispatch {
@@ -63,6 +89,19 @@ pub enum Op {
         stage: BoundStage,
         /// What is drawn.
         draw: IndexedIndirect,
+        /// What it is drawn to.
+        target: Target,
+    },
+    /// A drawing stage, each command counted by an occlusion query.
+    Query {
+        /// The stage.
+        stage: BoundStage,
+        /// What is drawn; without a count.
+        draw: IndexedIndirect,
+        /// Where the counts go.
+        queries: OcclusionQueries,
+        /// The query of the first command.
+        first_query: u32,
         /// What it is drawn to.
         target: Target,
     },
@@ -169,7 +208,7 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         Op::Dispatch { stage, groups: [groups, 1] } => format!("[{groups} groups] {}", bindings(stage)),
         Op::Dispatch { stage, groups: [x, y] } => format!("[{x}x{y} groups] {}", bindings(stage)),
         Op::DispatchIndirect { stage, groups } => format!("[groups from {}] {}", name(groups.id), bindings(stage)),
-        Op::Draw { stage, draw, .. } => {
+        Op::Draw { stage, draw, .. } | Op::Query { stage, draw, .. } => {
             let count = draw.count.map_or(String::new(), |count| format!(" count={}", name(count.id)));
             let instances = match stage.info.instance_stride {
                 0 => String::new(),
@@ -205,7 +244,7 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
             uses.push(Use::read(groups.id, Point::Indirect));
             uses
         }
-        Op::Draw { stage, draw, target } => {
+        Op::Draw { stage, draw, target } | Op::Query { stage, draw, target, .. } => {
             let mut uses = bindings(stage, Point::Drawing);
             if stage.info.instance_stride > 0 {
                 uses.push(Use::read(resource(&draw.instances), Point::Vertices));

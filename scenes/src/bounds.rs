@@ -215,6 +215,7 @@ impl Reach {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Surface;
     use glam::{DMat3, DQuat, Vec3};
     use proptest::prelude::*;
 
@@ -231,6 +232,7 @@ mod tests {
             dynamic: false,
             translucent: false,
             masked: false,
+            surface: Surface::default(),
         };
         Scene { meshes: vec![mesh(positions)], objects: vec![object], ..Scene::default() }
     }

@@ -33,7 +33,7 @@ impl Scene {
                     Some(format!("it uses mesh {}, but the scene has {meshes}", object.mesh))
                 }
                 Some(Some(fault)) => Some(fault.clone()),
-                Some(None) => object_fault(object, &bounds),
+                Some(None) => object_fault(object, &bounds).or_else(|| surface_fault(object, self)),
             };
             if let Some(fault) = fault {
                 return Err(SceneError::BadObject { object: object.name.clone(), fault });
@@ -73,6 +73,13 @@ impl Scene {
         Ok(())
     }
 
+    /// True if some object has more than one colour: a texture, or colours at its vertices.
+    pub fn has_textures(&self) -> bool {
+        let coloured =
+            |object: &Object| self.meshes.get(object.mesh as usize).is_some_and(|mesh| !mesh.colours.is_empty());
+        self.objects.iter().any(|object| object.surface.texture.is_some() || coloured(object))
+    }
+
     /// Triangles drawn when every object is: each mesh counts once an object. Lines and points count none.
     pub fn triangles(&self) -> u64 {
         let of_mesh = |mesh: &Mesh| match mesh.topology {
@@ -105,6 +112,14 @@ fn mesh_fault(mesh: &Mesh) -> Option<String> {
         let normals = mesh.normals.len();
         return Some(format!("its mesh '{}' has {normals} normals for {vertices} vertices", mesh.name));
     }
+    for (what, count) in [("texture coordinates", mesh.texture_coordinates.len()), ("colours", mesh.colours.len())] {
+        if count != 0 && count != vertices {
+            return Some(format!("its mesh '{}' has {count} {what} for {vertices} vertices", mesh.name));
+        }
+    }
+    if !mesh.texture_coordinates.iter().all(|at| at.is_finite()) {
+        return Some(format!("the texture coordinates of its mesh '{}' are not all finite", mesh.name));
+    }
     if let Some(index) = mesh.indices.iter().find(|&&index| index as usize >= vertices) {
         return Some(format!("its mesh '{}' has index {index}, but {vertices} vertices", mesh.name));
     }
@@ -115,6 +130,17 @@ fn mesh_fault(mesh: &Mesh) -> Option<String> {
     };
     let count = mesh.indices.len();
     (count % each != 0).then(|| format!("its mesh '{}' has {count} indices, not a multiple of {each}", mesh.name))
+}
+
+fn surface_fault(object: &Object, scene: &Scene) -> Option<String> {
+    if !object.surface.cutoff.is_finite() {
+        return Some("its alpha cutoff is not finite".into());
+    }
+    let texture = object.surface.texture?;
+    match scene.textures.get(texture as usize) {
+        None => Some(format!("it uses texture {texture}, but the scene has {}", scene.textures.len())),
+        Some(texture) => texture.fault(),
+    }
 }
 
 fn object_fault(object: &Object, bounds: &WorldBounds) -> Option<String> {
@@ -136,7 +162,9 @@ fn object_fault(object: &Object, bounds: &WorldBounds) -> Option<String> {
 mod tests {
     use super::*;
     use crate::animation::Orbit;
-    use glam::{DAffine3, DMat3, DVec3, Vec3};
+    use crate::model::Surface;
+    use crate::texture::Texture;
+    use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
 
     fn triangle() -> Scene {
         let mesh = Mesh {
@@ -145,7 +173,7 @@ mod tests {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
             normals: vec![Vec3::Z; 3],
             indices: vec![0, 1, 2],
-            declared_bounds: None,
+            ..Mesh::default()
         };
         let object = Object {
             name: "kite".into(),
@@ -155,6 +183,7 @@ mod tests {
             dynamic: false,
             translucent: false,
             masked: false,
+            surface: Surface::default(),
         };
         Scene { name: "test".into(), meshes: vec![mesh], objects: vec![object], ..Scene::default() }
     }
@@ -191,6 +220,15 @@ mod tests {
             fault(|scene| scene.objects[0].world_from_object.translation.x = 1e60),
             fault(|scene| scene.objects[0].mesh = 1),
             fault(|scene| scene.objects[0].colour[2] = f32::NAN),
+            fault(|scene| scene.objects[0].surface.cutoff = f32::NAN),
+            fault(|scene| scene.objects[0].surface.texture = Some(0)),
+            fault(|scene| {
+                scene.objects[0].surface.texture = Some(0);
+                scene.textures = vec![Texture { size: [2, 1], texels: vec![[0; 4]], ..Texture::default() }];
+            }),
+            fault(|scene| scene.meshes[0].texture_coordinates = vec![Vec2::ZERO]),
+            fault(|scene| scene.meshes[0].texture_coordinates = vec![Vec2::NAN; 3]),
+            fault(|scene| scene.meshes[0].colours = vec![[0; 4]; 4]),
             fault(|scene| scene.meshes[0].positions[1].y = f32::NAN),
             fault(|scene| scene.meshes[0].normals[1].y = f32::NAN),
             fault(|scene| scene.meshes[0].normals.truncate(2)),

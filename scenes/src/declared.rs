@@ -91,7 +91,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Object;
+    use crate::model::{Object, Surface};
     use crate::WorldBounds;
     use glam::{DAffine3, Vec3};
 
@@ -109,6 +109,7 @@ mod tests {
             dynamic: false,
             translucent: false,
             masked: false,
+            surface: Surface::default(),
         };
         Scene { name: "test".into(), meshes: vec![mesh], objects: vec![object], ..Scene::default() }
     }

@@ -1,8 +1,9 @@
 //! Reads glTF 2.0, as .gltf with its data beside or within it, or as .glb.
 //!
 //! Read are: meshes of every mode and vertex format (KHR_mesh_quantization included), instances (EXT_mesh_gpu_instancing), node
-//! trees in `f64`, node animation, cameras, and of materials the base colour and the alpha mode. Skins are drawn as their mesh lies
-//! in the file, morph targets at their default weights. Textures and lights are not read.
+//! trees in `f64`, node animation, cameras, and of materials the base colour
+//! with its texture (PNG or JPEG; KHR_texture_transform), vertex colours, the alpha mode and its cutoff, and which sides show. Skins are drawn as their mesh lies
+//! in the file, morph targets at their default weights. Lights and other textures are not read.
 //!
 //! Whatever is in the file, [`import`] returns: it does not panic, does not recurse, and allocates in proportion to the file.
 
@@ -12,6 +13,7 @@ mod cameras;
 mod container;
 mod document;
 mod fault;
+mod materials;
 mod mesh;
 mod motion;
 mod normals;
@@ -65,7 +67,7 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let accessors = Accessors::new(&document, &buffers);
     let moving = Moving::read(&document, &accessors, &tree)?;
 
-    let mut objects = Objects::new(&document, &accessors);
+    let mut objects = Objects::new(&document, &accessors, folder);
     let mut cameras = Vec::new();
     // In order of index, whatever the tree looks like.
     let mut nodes = tree.order.clone();
@@ -80,7 +82,8 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     }
     warn_of_stills(&document, &name, &nodes);
     let (nodes_of_cameras, cameras) = cameras.into_iter().unzip();
-    let mut scene = Scene { name, meshes: objects.meshes, objects: objects.objects, cameras, ..Scene::default() };
+    let (meshes, textures) = (objects.meshes, objects.materials.textures);
+    let mut scene = Scene { name, meshes, objects: objects.objects, textures, cameras, ..Scene::default() };
     set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
     check_cameras(&scene.cameras)?;
     scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;

@@ -1,8 +1,9 @@
 //! Writes any scene, with a camera path, as one .glb file.
 //!
-//! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, alpha modes, and cameras
+//! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, textures, alpha modes, and cameras
 //! up to the rounding of their rotation; the import scales normals to length 1, which may change their last bit. Lost or changed:
-//! - A mesh that is used in several colours comes back as one mesh for each colour: in glTF the mesh holds its material.
+//! - A mesh that is used with several colours or surfaces comes back as one mesh for each: in glTF the mesh holds its material.
+//! - A texture of objects whose mesh has no texture coordinates is not drawn, and comes back as none.
 //! - Objects whose mesh is empty come back as nothing: glTF has no empty meshes.
 //! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
 //!   motion, skew is lost.
@@ -16,8 +17,9 @@ mod motion;
 
 use crate::camera::Projection;
 use crate::error::SceneError;
-use crate::model::{Mesh, Object, Scene, Topology};
+use crate::model::{Mesh, Object, Scene, Surface, Topology};
 use crate::path::CameraPath;
+use crate::texture::{Texture, Wrap};
 use binary::Binary;
 use glam::DAffine3;
 use serde_json::{json, Value};
@@ -32,6 +34,7 @@ pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Re
     scene.check()?;
     let mut export = Export::default();
     export.geometry(&scene.meshes);
+    export.textures(&scene.textures)?;
     for object in &scene.objects {
         export.object(object, &scene.meshes);
     }
@@ -61,13 +64,16 @@ struct Export {
     roots: Vec<usize>,
     meshes: Vec<Value>,
     materials: Vec<Value>,
+    textures: Vec<Value>,
+    images: Vec<Value>,
+    texture_samplers: Vec<Value>,
     cameras: Vec<Value>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
     /// The primitive of each scene mesh, without its material; null for empty ones.
     primitives: Vec<Value>,
-    /// glTF material by colour bits and alpha mode.
-    material_of: HashMap<([u32; 4], &'static str), usize>,
+    /// glTF material by colour bits, alpha mode, cutoff bits, texture and sides.
+    material_of: HashMap<([u32; 4], &'static str, u32, Option<u32>, bool), usize>,
     /// glTF mesh by scene mesh and material.
     mesh_of: HashMap<(u32, usize), usize>,
 }
@@ -87,9 +93,36 @@ impl Export {
                 Topology::Lines => 1,
                 Topology::Triangles => 4,
             };
-            let attributes = json!({ "POSITION": positions, "NORMAL": normals });
+            let mut attributes = json!({ "POSITION": positions, "NORMAL": normals });
+            if !mesh.texture_coordinates.is_empty() {
+                let coordinates = mesh.texture_coordinates.iter().map(|at| at.to_array());
+                attributes["TEXCOORD_0"] = self.binary.vectors("VEC2", coordinates).into();
+            }
+            if !mesh.colours.is_empty() {
+                attributes["COLOR_0"] = self.binary.colours(&mesh.colours).into();
+            }
             self.primitives.push(json!({ "attributes": attributes, "indices": indices, "mode": mode }));
         }
+    }
+
+    /// Each with a sampler and a picture of its own.
+    fn textures(&mut self, textures: &[Texture]) -> Result<(), SceneError> {
+        for (index, texture) in textures.iter().enumerate() {
+            let file = texture.encode().map_err(|fault| SceneError::BadObject {
+                object: texture.name.clone(),
+                fault: format!("its texture: {fault}"),
+            })?;
+            let view = self.binary.file(&file);
+            self.images.push(json!({ "name": texture.name, "bufferView": view, "mimeType": "image/png" }));
+            let [wrap_s, wrap_t] = texture.wrap.map(|wrap| match wrap {
+                Wrap::Repeat => 10_497,
+                Wrap::Mirror => 33_648,
+                Wrap::Clamp => 33_071,
+            });
+            self.texture_samplers.push(json!({ "wrapS": wrap_s, "wrapT": wrap_t }));
+            self.textures.push(json!({ "sampler": index, "source": index }));
+        }
+        Ok(())
     }
 
     fn object(&mut self, object: &Object, meshes: &[Mesh]) {
@@ -111,11 +144,22 @@ impl Export {
             (false, false) => "OPAQUE",
         };
         let materials = &mut self.materials;
-        *self.material_of.entry((object.colour.map(f32::to_bits), mode)).or_insert_with(|| {
-            materials.push(json!({
+        let Surface { cutoff, texture, single_sided } = object.surface;
+        let key = (object.colour.map(f32::to_bits), mode, cutoff.to_bits(), texture, single_sided);
+        *self.material_of.entry(key).or_insert_with(|| {
+            let mut material = json!({
                 "pbrMetallicRoughness": { "baseColorFactor": object.colour.map(f64::from), "metallicFactor": 0.0 },
                 "alphaMode": mode,
-            }));
+                "doubleSided": !single_sided,
+            });
+            if let Some(texture) = texture {
+                material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            }
+            // Other modes have no use for it, and may not name it.
+            if mode == "MASK" {
+                material["alphaCutoff"] = f64::from(cutoff).into();
+            }
+            materials.push(material);
             materials.len() - 1
         })
     }
@@ -179,6 +223,9 @@ impl Export {
             ("nodes", self.nodes),
             ("meshes", self.meshes),
             ("materials", self.materials),
+            ("textures", self.textures),
+            ("images", self.images),
+            ("samplers", self.texture_samplers),
             ("cameras", self.cameras),
             ("animations", animations),
             ("accessors", accessors),

@@ -1,13 +1,13 @@
 //! A fingerprint of everything that can change a picture of a scene, for caches.
 
 use crate::animation::{Motion, Orbit};
-use crate::model::{Mesh, Object, Scene};
+use crate::model::{Mesh, Object, Scene, Surface};
 use glam::DAffine3;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
 impl Scene {
-    /// SHA-256 over meshes, objects, cameras, motion and walk. Names do not count, the order of objects does.
+    /// SHA-256 over meshes, objects, textures, cameras, motion and walk. Names do not count, the order of objects does.
     /// Two scenes with the same hash give the same pictures along the same path.
     pub fn content_hash(&self) -> [u8; 32] {
         let mut hash = Sha256::new();
@@ -15,6 +15,7 @@ impl Scene {
         hash_count(&mut hash, self.meshes.len());
         self.meshes.iter().for_each(|mesh| hash_mesh(&mut hash, mesh));
         hash_objects(&mut hash, &self.objects);
+        hash_materials(&mut hash, self);
         match &self.motion {
             Motion::Orbits(orbits) => hash_orbits(&mut hash, orbits),
             // `Debug` prints every number of a track in full, so equal text means equal motion.
@@ -61,6 +62,37 @@ fn hash_mesh(hash: &mut Sha256, mesh: &Mesh) {
             hash,
             [declared.min, declared.max].iter().flat_map(|corner| corner.to_array()).map(f64::to_le_bytes),
         );
+    }
+}
+
+/// Only of scenes that have any, so that all others keep the hash that they have always had.
+fn hash_materials(hash: &mut Sha256, scene: &Scene) {
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        if !mesh.texture_coordinates.is_empty() || !mesh.colours.is_empty() {
+            hash.update(b"vertices");
+            hash_count(hash, index);
+            hash_count(hash, mesh.texture_coordinates.len());
+            let numbers = mesh.texture_coordinates.iter().flat_map(|at| at.to_array());
+            hash_numbers(hash, numbers.map(f32::to_le_bytes));
+            hash_count(hash, mesh.colours.len());
+            hash_numbers(hash, mesh.colours.iter().copied());
+        }
+    }
+    for (index, Object { surface, .. }) in scene.objects.iter().enumerate() {
+        if *surface != Surface::default() {
+            hash.update(b"surface");
+            hash_count(hash, index);
+            hash.update(surface.cutoff.to_le_bytes());
+            // No scene has as many textures as the last number.
+            hash.update(surface.texture.unwrap_or(u32::MAX).to_le_bytes());
+            hash.update([u8::from(surface.single_sided)]);
+        }
+    }
+    for texture in &scene.textures {
+        hash.update(b"texture");
+        hash_numbers(hash, texture.size.into_iter().map(u32::to_le_bytes));
+        hash_numbers(hash, texture.texels.iter().copied());
+        hash.update(texture.wrap.map(|wrap| wrap as u8));
     }
 }
 

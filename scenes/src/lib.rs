@@ -16,6 +16,7 @@ mod model;
 mod open;
 mod path;
 pub mod procedural;
+mod texture;
 
 pub use animation::Motion;
 pub use bounds::WorldBounds;
@@ -24,7 +25,8 @@ pub use check::MOST_OBJECTS;
 pub use error::SceneError;
 pub use gltf::{import, import_bytes};
 pub use gltf_export::export_glb;
-pub use model::{Aabb, Mesh, Object, Scene, Topology, Walk};
+pub use model::{Aabb, Mesh, Object, Scene, Surface, Topology, Walk};
 pub use open::open;
 pub use path::{record, record_shots, CameraPath, PathKind, Shot};
 pub use procedural::SceneOptions;
+pub use texture::{Texture, Wrap};

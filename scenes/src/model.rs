@@ -2,7 +2,8 @@
 
 use crate::animation::Motion;
 use crate::camera::Camera;
-use glam::{DAffine3, DVec3, Vec3};
+use crate::texture::Texture;
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 /// How a mesh's indices form primitives. Strips, fans and loops are rewritten to these on import.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -31,6 +32,28 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// The box that its maker says it lies in, in object space. Honoured if it holds every position, else ignored.
     pub declared_bounds: Option<Aabb>,
+    /// Where each position lies on the texture, (1, 1) being its lower right corner; empty if there is no texture.
+    pub texture_coordinates: Vec<Vec2>,
+    /// What each position's colour is multiplied by: linear RGBA, 255 for 1; empty for no colours.
+    pub colours: Vec<[u8; 4]>,
+}
+
+/// What of a surface decides where it leaves fragments, beside its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Of masked objects: what has less alpha is not there.
+    pub cutoff: f32,
+    /// Index into [`Scene::textures`] of the base colour's texture.
+    pub texture: Option<u32>,
+    /// Triangles are seen from the front alone, where their corners go round counter-clockwise. Means nothing for lines and points.
+    pub single_sided: bool,
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        // The cutoff of glTF.
+        Surface { cutoff: 0.5, texture: None, single_sided: false }
+    }
 }
 
 /// One mesh primitive in the world: the unit of culling.
@@ -46,10 +69,12 @@ pub struct Object {
     pub colour: [f32; 4],
     /// Moves during the scene's animation.
     pub dynamic: bool,
-    /// Blended after the opaque objects (drawn opaque until the translucent pass exists).
+    /// Blended after all others, back to front; hides nothing.
     pub translucent: bool,
-    /// Alpha-tested. Such an object must never write depth under forced early tests, once textures exist.
+    /// Is not there where its alpha is less than its surface's cutoff.
     pub masked: bool,
+    /// What else decides where it leaves fragments.
+    pub surface: Surface,
 }
 
 /// An axis-aligned box, `min <= max` in each axis when it holds something.
@@ -70,6 +95,8 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Objects, in drawing order.
     pub objects: Vec<Object>,
+    /// Textures of surfaces.
+    pub textures: Vec<Texture>,
     /// Cameras supplied with the scene, the default one first. May be empty: then one is made from the bounds.
     pub cameras: Vec<Camera>,
     /// How dynamic objects move.

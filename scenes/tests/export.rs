@@ -1,7 +1,9 @@
 //! What is written as glTF reads back the same.
 
 use glam::Vec3;
-use scenes::{export_glb, import_bytes, open, CameraPath, Mesh, Motion, Projection, Scene, SceneOptions};
+use scenes::{
+    export_glb, import_bytes, open, CameraPath, Mesh, Motion, Projection, Scene, SceneOptions, Surface, Texture, Wrap,
+};
 use std::path::Path;
 
 fn make(name: &str, scale: f64) -> Scene {
@@ -23,6 +25,11 @@ fn assert_same_objects(written: &Scene, read: &Scene) {
             a.name
         );
         assert_eq!((a.colour, a.dynamic, a.translucent, a.masked), (b.colour, b.dynamic, b.translucent, b.masked));
+        // Textures come back in the order in which objects use them.
+        let texture = |scene: &Scene, surface: &Surface| surface.texture.map(|at| scene.textures[at as usize].clone());
+        assert!(texture(written, &a.surface) == texture(read, &b.surface), "texture of {}", a.name);
+        let rest = |surface: &Surface| Surface { texture: None, ..*surface };
+        assert_eq!(rest(&a.surface), rest(&b.surface), "{}", a.name);
         assert_same_mesh(&written.meshes[a.mesh as usize], &read.meshes[b.mesh as usize]);
     }
 }
@@ -32,21 +39,39 @@ fn assert_same_mesh(written: &Mesh, read: &Mesh) {
     assert!(written.positions == read.positions, "positions of {}", written.name);
     assert_eq!(written.declared_bounds, read.declared_bounds, "{}", written.name);
     assert!(written.indices == read.indices, "indices of {}", written.name);
+    assert!(written.texture_coordinates == read.texture_coordinates, "texture coordinates of {}", written.name);
+    assert!(written.colours == read.colours, "colours of {}", written.name);
     // The import scales normals to length 1 once more, which may change their last bit.
     let close = |(a, b): (&Vec3, &Vec3)| a.abs_diff_eq(*b, 2e-7);
     assert!(written.normals.len() == read.normals.len(), "normals of {}", written.name);
     assert!(written.normals.iter().zip(&read.normals).all(close), "normals of {}", written.name);
 }
 
+/// Gives an object a mesh and a texture of its own.
+fn dress(scene: &mut Scene, object: usize) {
+    let mut mesh = scene.meshes[scene.objects[object].mesh as usize].clone();
+    mesh.texture_coordinates = mesh.positions.iter().map(|at| 1.5 * at.truncate()).collect();
+    mesh.colours = (0..mesh.positions.len()).map(|vertex| [vertex as u8, 255, 7, 128]).collect();
+    scene.meshes.push(mesh);
+    let texels = (0..6u8).map(|texel| [texel, 2 * texel, 200, 40 * texel]).collect();
+    let (wrap, texture) = ([Wrap::Mirror, Wrap::Clamp], scene.textures.len() as u32);
+    scene.textures.push(Texture { name: "checks".into(), size: [3, 2], texels, wrap });
+    scene.objects[object].mesh = (scene.meshes.len() - 1) as u32;
+    scene.objects[object].surface = Surface { texture: Some(texture), single_sided: true, ..Surface::default() };
+}
+
 #[test]
 fn scenes_read_back_identical() {
-    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1), ("bad-bounds", 0.1)] {
+    for (name, scale) in [("boxes", 1.0), ("city-block", 0.01), ("rooms", 0.1), ("bad-bounds", 0.1), ("forest", 0.02)] {
         let mut scene = make(name, scale);
         scene.objects[3].translucent = true;
         scene.objects[3].colour[3] = 0.25;
         scene.objects[4].masked = true;
+        scene.objects[4].surface.cutoff = 0.625;
+        dress(&mut scene, 5);
         let back = read(&export_glb(&scene, None, 0).expect("it can be written"));
         assert_same_objects(&scene, &back);
+        assert!(!back.textures.is_empty() && back.textures.len() <= scene.textures.len(), "textures of {name}");
         assert_eq!(back.cameras.len(), 1);
         assert_eq!(back.cameras[0].name, scene.cameras[0].name);
         assert_eq!(back.cameras[0].projection, scene.cameras[0].projection);

@@ -2,9 +2,9 @@
 
 mod support;
 
-use glam::DVec3;
+use glam::{DVec3, Vec2};
 use scenes::procedural::SCENES;
-use scenes::{open, Aabb, CameraPath, Motion, Scene, SceneError, SceneOptions, WorldBounds};
+use scenes::{open, Aabb, CameraPath, Motion, Scene, SceneError, SceneOptions, Texture, WorldBounds};
 use std::collections::HashSet;
 use support::ItemBuffer;
 
@@ -53,6 +53,7 @@ fn objects_grow_with_scale() {
     let standards = [
         ("city-block", 94_000.0),
         ("rooms", 4_000.0),
+        ("forest", 12_000.0),
         ("boxes", 402.0),
         ("moving-boxes", 402.0),
         ("bad-bounds", 2_000.0),
@@ -115,6 +116,20 @@ fn the_eye_stands_in_half_of_all_bad_boxes() {
             scene.objects.iter().map(place).collect::<Vec<_>>()
         };
         assert!(drawn(&bad) == drawn(&good), "the two scenes differ in more than their boxes");
+    }
+}
+
+#[test]
+fn most_of_the_forest_is_masked_leaves_and_some_of_it_glass() {
+    let forest = make("forest", 0.5, 1);
+    let share = |chosen: fn(&scenes::Object) -> bool| {
+        forest.objects.iter().filter(|object| chosen(object)).count() as f64 / forest.objects.len() as f64
+    };
+    assert!(share(|object| object.masked && object.surface.texture.is_some()) > 0.5);
+    assert!((0.02..0.2).contains(&share(|object| object.translucent && object.colour[3] < 1.0)));
+    for texture in &forest.textures {
+        let holes = texture.texels.iter().filter(|texel| texel[3] == 0).count() as f64 / texture.texels.len() as f64;
+        assert!((0.2..0.8).contains(&holes), "{}: {holes}", texture.name);
     }
 }
 
@@ -183,7 +198,7 @@ fn a_third_of_the_moving_boxes_move_and_nothing_else() {
 fn the_hash_sees_every_change_of_a_picture() {
     let base = make("moving-boxes", 0.1, 1);
     type Change = fn(&mut Scene);
-    let changes: [Change; 10] = [
+    let changes: [Change; 16] = [
         |scene| scene.meshes[1].positions[2].x += 1e-6,
         |scene| scene.meshes[1].normals[2] = -scene.meshes[1].normals[2],
         |scene| scene.meshes[1].indices.swap(0, 1),
@@ -191,6 +206,12 @@ fn the_hash_sees_every_change_of_a_picture() {
         |scene| scene.objects[4].mesh = (scene.objects[4].mesh + 1) % 5,
         |scene| scene.objects[4].colour[0] += 1e-6,
         |scene| scene.objects[4].masked = true,
+        |scene| scene.objects[4].surface.cutoff += 1e-6,
+        |scene| scene.objects[4].surface.single_sided = true,
+        |scene| scene.objects[4].surface.texture = Some(0),
+        |scene| scene.meshes[1].texture_coordinates = vec![Vec2::ZERO; scene.meshes[1].positions.len()],
+        |scene| scene.meshes[1].colours = vec![[255; 4]; scene.meshes[1].positions.len()],
+        |scene| scene.textures = vec![Texture { size: [1, 1], texels: vec![[9; 4]], ..Texture::default() }],
         |scene| scene.objects.swap(4, 5),
         |scene| scene.cameras[0].pose.position.x += 1e-9,
         |scene| match &mut scene.motion {

@@ -100,6 +100,522 @@ const _: () = {
     assert!(size_of::<DepthInstance>() == 64);
 };
 
+/// Objects that are not there where their alpha is low. Depth is written late, by what is left.
+///
+/// The colour, where there is something. No early tests: they would write the depth of what is not there.
+#[derive(Clone, Copy, Debug)]
+pub struct Masked {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for Masked {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/masked",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/masked.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/masked.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MaskedPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for Masked {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MaskedPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedPush, view) == 0);
+    assert!(size_of::<MaskedPush>() == 88);
+};
+
+/// One vertex of [`Masked`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedVertex, position) == 0);
+    assert!(std::mem::offset_of!(MaskedVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(MaskedVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(MaskedVertex, tint) == 24);
+    assert!(size_of::<MaskedVertex>() == 28);
+};
+
+/// One instance of [`Masked`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(MaskedInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(MaskedInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(MaskedInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(MaskedInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(MaskedInstance, colour) == 60);
+    assert!(size_of::<MaskedInstance>() == 64);
+};
+
+/// Draw/masked with the item buffer beside the colour.
+///
+/// The colour and who owns the pixel, where there is something.
+#[derive(Clone, Copy, Debug)]
+pub struct MaskedAndItems {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for MaskedAndItems {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/masked_and_items",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/masked_and_items.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/masked_and_items.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0, 1],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MaskedAndItemsPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for MaskedAndItems {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MaskedAndItemsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedAndItemsPush, view) == 0);
+    assert!(size_of::<MaskedAndItemsPush>() == 88);
+};
+
+/// One vertex of [`MaskedAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedAndItemsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedAndItemsVertex, position) == 0);
+    assert!(std::mem::offset_of!(MaskedAndItemsVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(MaskedAndItemsVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(MaskedAndItemsVertex, tint) == 24);
+    assert!(size_of::<MaskedAndItemsVertex>() == 28);
+};
+
+/// One instance of [`MaskedAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedAndItemsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(MaskedAndItemsInstance, colour) == 60);
+    assert!(size_of::<MaskedAndItemsInstance>() == 64);
+};
+
+/// Flags each masked object that shows, once draw/masked has drawn it. A stage that discards has no early tests, and would flag
+/// what is occluded too; depth is only tested here, so that early tests do no harm.
+///
+/// A flag for the object, where there is something. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct MaskedFlags {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for MaskedFlags {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/masked_flags",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/masked_flags.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/masked_flags.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MaskedFlagsPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into(), self.visible.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for MaskedFlags {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MaskedFlagsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedFlagsPush, view) == 0);
+    assert!(size_of::<MaskedFlagsPush>() == 88);
+};
+
+/// One vertex of [`MaskedFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedFlagsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedFlagsVertex, position) == 0);
+    assert!(std::mem::offset_of!(MaskedFlagsVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(MaskedFlagsVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(MaskedFlagsVertex, tint) == 24);
+    assert!(size_of::<MaskedFlagsVertex>() == 28);
+};
+
+/// One instance of [`MaskedFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedFlagsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(MaskedFlagsInstance, colour) == 60);
+    assert!(size_of::<MaskedFlagsInstance>() == 64);
+};
+
+/// One count a fragment that draw/masked shades and keeps. For pictures, never in timed frames.
+///
+/// Adds one where there is something.
+#[derive(Clone, Copy, Debug)]
+pub struct MaskedOverdraw {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for MaskedOverdraw {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/masked_overdraw",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/masked_overdraw.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/masked_overdraw.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MaskedOverdrawPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for MaskedOverdraw {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MaskedOverdrawPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedOverdrawPush, view) == 0);
+    assert!(size_of::<MaskedOverdrawPush>() == 88);
+};
+
+/// One vertex of [`MaskedOverdraw`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedOverdrawVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedOverdrawVertex, position) == 0);
+    assert!(std::mem::offset_of!(MaskedOverdrawVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(MaskedOverdrawVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(MaskedOverdrawVertex, tint) == 24);
+    assert!(size_of::<MaskedOverdrawVertex>() == 28);
+};
+
+/// One instance of [`MaskedOverdraw`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskedOverdrawInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(MaskedOverdrawInstance, colour) == 60);
+    assert!(size_of::<MaskedOverdrawInstance>() == 64);
+};
+
 /// Every drawn object, Lambert-shaded, with early fragment tests.
 ///
 /// The colour. Occluded fragments stop before this shader.
@@ -619,4 +1135,534 @@ const _: () = {
     assert!(std::mem::offset_of!(OverdrawInstance, origin_low) == 48);
     assert!(std::mem::offset_of!(OverdrawInstance, colour) == 60);
     assert!(size_of::<OverdrawInstance>() == 64);
+};
+
+/// Draw/objects with base colour textures and vertex colours, with early fragment tests.
+///
+/// The colour. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Textured {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for Textured {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/textured",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/textured.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/textured.frag.spv") },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TexturedPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for Textured {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TexturedPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedPush, view) == 0);
+    assert!(size_of::<TexturedPush>() == 88);
+};
+
+/// One vertex of [`Textured`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedVertex, position) == 0);
+    assert!(std::mem::offset_of!(TexturedVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(TexturedVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(TexturedVertex, tint) == 24);
+    assert!(size_of::<TexturedVertex>() == 28);
+};
+
+/// One instance of [`Textured`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(TexturedInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(TexturedInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(TexturedInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(TexturedInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(TexturedInstance, colour) == 60);
+    assert!(size_of::<TexturedInstance>() == 64);
+};
+
+/// Draw/textured that flags each object with a fragment that passes the early tests.
+///
+/// The colour, and a flag for the object. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturedAndFlags {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for TexturedAndFlags {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/textured_and_flags",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/textured_and_flags.vert.spv") },
+            ShaderModule {
+                kind: ShaderKind::Fragment,
+                spirv: include_bytes!("spirv/draw/textured_and_flags.frag.spv"),
+            },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TexturedAndFlagsPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into(), self.visible.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for TexturedAndFlags {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TexturedAndFlagsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndFlagsPush, view) == 0);
+    assert!(size_of::<TexturedAndFlagsPush>() == 88);
+};
+
+/// One vertex of [`TexturedAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedAndFlagsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndFlagsVertex, position) == 0);
+    assert!(std::mem::offset_of!(TexturedAndFlagsVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(TexturedAndFlagsVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(TexturedAndFlagsVertex, tint) == 24);
+    assert!(size_of::<TexturedAndFlagsVertex>() == 28);
+};
+
+/// One instance of [`TexturedAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedAndFlagsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(TexturedAndFlagsInstance, colour) == 60);
+    assert!(size_of::<TexturedAndFlagsInstance>() == 64);
+};
+
+/// Draw/textured with the item buffer beside the colour.
+///
+/// The colour, and who owns the pixel. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturedAndItems {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for TexturedAndItems {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/textured_and_items",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/textured_and_items.vert.spv") },
+            ShaderModule {
+                kind: ShaderKind::Fragment,
+                spirv: include_bytes!("spirv/draw/textured_and_items.frag.spv"),
+            },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0, 1],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TexturedAndItemsPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for TexturedAndItems {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TexturedAndItemsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndItemsPush, view) == 0);
+    assert!(size_of::<TexturedAndItemsPush>() == 88);
+};
+
+/// One vertex of [`TexturedAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedAndItemsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndItemsVertex, position) == 0);
+    assert!(std::mem::offset_of!(TexturedAndItemsVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(TexturedAndItemsVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(TexturedAndItemsVertex, tint) == 24);
+    assert!(size_of::<TexturedAndItemsVertex>() == 28);
+};
+
+/// One instance of [`TexturedAndItems`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedAndItemsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(TexturedAndItemsInstance, colour) == 60);
+    assert!(size_of::<TexturedAndItemsInstance>() == 64);
+};
+
+/// Draw/textured_and_flags with the item buffer beside the colour.
+///
+/// The colour, who owns the pixel, and a flag for the object.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturedItemsAndFlags {
+    /// By object.
+    pub object_materials: BufferRef<u32>,
+    /// `materials` in GLSL.
+    pub materials: BufferRef<types::Material>,
+    /// `texels` in GLSL.
+    pub texels: BufferRef<u32>,
+    /// `visible` in GLSL.
+    pub visible: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for TexturedItemsAndFlags {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/textured_items_and_flags",
+        modules: &[
+            ShaderModule {
+                kind: ShaderKind::Vertex,
+                spirv: include_bytes!("spirv/draw/textured_items_and_flags.vert.spv"),
+            },
+            ShaderModule {
+                kind: ShaderKind::Fragment,
+                spirv: include_bytes!("spirv/draw/textured_items_and_flags.frag.spv"),
+            },
+        ],
+        bindings: &[
+            BindingInfo {
+                name: "object_materials",
+                binding: 0,
+                kind: BindingKind::StorageBuffer,
+                access: Access::Read,
+            },
+            BindingInfo { name: "materials", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "texels", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "visible", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+            VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
+            VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+        ],
+        vertex_stride: 28,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0, 1],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TexturedItemsAndFlagsPush { view: self.view };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.object_materials.into(), self.materials.into(), self.texels.into(), self.visible.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl GraphicsStage for TexturedItemsAndFlags {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TexturedItemsAndFlagsPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsPush, view) == 0);
+    assert!(size_of::<TexturedItemsAndFlagsPush>() == 88);
+};
+
+/// One vertex of [`TexturedItemsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedItemsAndFlagsVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+    /// On the texture.
+    pub coordinates: [f32; 2],
+    /// RGBA8, linear: what the colour is multiplied by.
+    pub tint: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, position) == 0);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, normal_snorm16) == 12);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, coordinates) == 16);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, tint) == 24);
+    assert!(size_of::<TexturedItemsAndFlagsVertex>() == 28);
+};
+
+/// One instance of [`TexturedItemsAndFlags`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TexturedItemsAndFlagsInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsInstance, colour) == 60);
+    assert!(size_of::<TexturedItemsAndFlagsInstance>() == 64);
 };

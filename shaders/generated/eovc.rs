@@ -320,18 +320,18 @@ const _: () = {
 };
 
 /// Whoever owns a pixel of the item buffer is an occluder of the next frame (EOVC thesis III.6.2, figures
-/// 12 and 13). Drawing in any order flags hidden objects too; this does not. One invocation a strip of FILTER_STRIP pixels of
-/// a column: what it has just flagged it need not flag again. Twin: culling/src/eovc/twin.rs.
+/// 12 and 13). Drawing in any order flags hidden objects too; this does not. One invocation a strip of two columns and FILTER_STRIP
+/// rows: what it has just flagged it need not flag again. Twin: culling/src/eovc/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct FilterOccluders {
-    /// `owners` in GLSL.
+    /// Gathered: on a CPU device a texture read is a call, and so four owners cost one.
     pub owners: ImageRef,
     /// `occluders` in GLSL.
     pub occluders: BufferRef<u32>,
     /// `size_px` in GLSL.
     pub size_px: [u32; 2],
     /// `strips` in GLSL.
-    pub strips: u32,
+    pub strips: [u32; 2],
 }
 
 impl Stage for FilterOccluders {
@@ -342,10 +342,10 @@ impl Stage for FilterOccluders {
             spirv: include_bytes!("spirv/eovc/filter_occluders.comp.spv"),
         }],
         bindings: &[
-            BindingInfo { name: "owners", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "owners", binding: 0, kind: BindingKind::GatheredImage, access: Access::Read },
             BindingInfo { name: "occluders", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
-        push_size: 12,
+        push_size: 16,
         constants: &[],
         local_size: [64, 1, 1],
         vertex: &[],
@@ -367,13 +367,13 @@ impl ComputeStage for FilterOccluders {}
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FilterOccludersPush {
     size_px: [u32; 2],
-    strips: u32,
+    strips: [u32; 2],
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(FilterOccludersPush, size_px) == 0);
     assert!(std::mem::offset_of!(FilterOccludersPush, strips) == 8);
-    assert!(size_of::<FilterOccludersPush>() == 12);
+    assert!(size_of::<FilterOccludersPush>() == 16);
 };
 
 /// From each effective occluder up to the root, every node on the way is visible; a node that another occluder

@@ -92,7 +92,8 @@ pub struct MeasureBlocks {
     pub bounds: BufferRef<types::Bounds>,
     /// `spans` in GLSL.
     pub spans: BufferRef<types::BlockSpan>,
-    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
+    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before;
+    /// nothing is said where there is a single range.
     pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,
@@ -137,7 +138,7 @@ impl ComputeStage for MeasureBlocks {}
 /// 2015; depth is reversed, so the farthest is the smallest). Twin: culling/src/hzb/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReduceDepth {
-    /// `depth` in GLSL.
+    /// Gathered: on a CPU device a texture read is a call, and so four depths cost one.
     pub depth: ImageRef,
     /// `levels` in GLSL.
     pub levels: BufferRef<types::PyramidLevel>,
@@ -159,7 +160,7 @@ impl Stage for ReduceDepth {
             spirv: include_bytes!("spirv/hzb/reduce_depth.comp.spv"),
         }],
         bindings: &[
-            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::GatheredImage, access: Access::Read },
             BindingInfo { name: "levels", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
@@ -394,8 +395,8 @@ impl Default for ScanBlocksConstants {
 }
 
 /// Which blocks may have objects that are due in this step, and do not lie wholly behind what was drawn? In step k
-/// are due what the last frame saw of range k and what it did not see of range k - 1. A block once hidden stays so for the rest of
-/// the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs.
+/// are due what the last frame saw of range k and what it did not see of range k - 1: in step 0 the former alone. A block once hidden stays
+/// so for the rest of the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct TestBlocks {
     /// `bounds` in GLSL.
@@ -412,6 +413,8 @@ pub struct TestBlocks {
     pub pyramid: BufferRef<f32>,
     /// By block: 1 if it is due.
     pub due: BufferRef<u32>,
+    /// What the last frame saw, by object.
+    pub seen: BufferRef<u32>,
     /// `step` in GLSL.
     pub step: u32,
     /// Specialization constants.
@@ -430,6 +433,7 @@ impl Stage for TestBlocks {
             BindingInfo { name: "levels", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "pyramid", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "due", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "seen", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 4,
         constants: &[
@@ -457,6 +461,7 @@ impl Stage for TestBlocks {
                 self.levels.into(),
                 self.pyramid.into(),
                 self.due.into(),
+                self.seen.into(),
             ],
             bytemuck::bytes_of(&push),
             vec![self.constants.footprint_texels, u32::from(self.constants.behind), self.constants.finest_level],
@@ -714,6 +719,7 @@ impl Stage for TestObjects {
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
             ConstantInfo { name: "BOXES", id: 2 },
+            ConstantInfo { name: "KIND_COUNT", id: 6 },
             ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
         local_size: [64, 1, 1],
@@ -744,6 +750,7 @@ impl Stage for TestObjects {
                 self.constants.footprint_texels,
                 u32::from(self.constants.behind),
                 u32::from(self.constants.boxes),
+                self.constants.kind_count,
                 self.constants.finest_level,
             ],
         )
@@ -772,6 +779,8 @@ pub struct TestObjectsConstants {
     pub behind: bool,
     /// What the last frame did not see must show by its box as well.
     pub boxes: bool,
+    /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
+    pub kind_count: u32,
     /// `FINEST_LEVEL` in GLSL.
     pub finest_level: u32,
 }
@@ -779,7 +788,7 @@ pub struct TestObjectsConstants {
 impl Default for TestObjectsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, boxes: true, finest_level: 1 }
+        Self { footprint_texels: 4, behind: true, boxes: true, kind_count: 1, finest_level: 1 }
     }
 }
 
@@ -808,6 +817,8 @@ pub struct WriteBlocks {
     pub visible: BufferRef<u32>,
     /// `small_indices` in GLSL.
     pub small_indices: u32,
+    /// Specialization constants.
+    pub constants: WriteBlocksConstants,
 }
 
 impl Stage for WriteBlocks {
@@ -829,7 +840,7 @@ impl Stage for WriteBlocks {
             BindingInfo { name: "visible", binding: 8, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 4,
-        constants: &[],
+        constants: &[ConstantInfo { name: "KIND_COUNT", id: 6 }],
         local_size: [64, 1, 1],
         vertex: &[],
         vertex_stride: 0,
@@ -854,7 +865,7 @@ impl Stage for WriteBlocks {
                 self.visible.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![],
+            vec![self.constants.kind_count],
         )
     }
 }
@@ -871,3 +882,17 @@ const _: () = {
     assert!(std::mem::offset_of!(WriteBlocksPush, small_indices) == 0);
     assert!(size_of::<WriteBlocksPush>() == 4);
 };
+
+/// Specialization constants of [`WriteBlocks`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WriteBlocksConstants {
+    /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
+    pub kind_count: u32,
+}
+
+impl Default for WriteBlocksConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { kind_count: 1 }
+    }
+}

@@ -10,7 +10,9 @@ pub mod farthest;
 pub mod frustum;
 pub mod hzb;
 pub mod pack;
+pub mod queries;
 pub mod roc;
+pub mod translucent;
 pub mod types;
 pub mod warp;
 pub mod woc;
@@ -21,11 +23,19 @@ use crate::contract::{Stage, StageInfo};
 /// What is fixed about each stage, by name.
 pub const STAGES: &[&StageInfo] = &[
     <draw::Depth as Stage>::INFO,
+    <draw::Masked as Stage>::INFO,
+    <draw::MaskedAndItems as Stage>::INFO,
+    <draw::MaskedFlags as Stage>::INFO,
+    <draw::MaskedOverdraw as Stage>::INFO,
     <draw::Objects as Stage>::INFO,
     <draw::ObjectsAndFlags as Stage>::INFO,
     <draw::ObjectsAndItems as Stage>::INFO,
     <draw::ObjectsItemsAndFlags as Stage>::INFO,
     <draw::Overdraw as Stage>::INFO,
+    <draw::Textured as Stage>::INFO,
+    <draw::TexturedAndFlags as Stage>::INFO,
+    <draw::TexturedAndItems as Stage>::INFO,
+    <draw::TexturedItemsAndFlags as Stage>::INFO,
     <engine::ClearTail as Stage>::INFO,
     <engine::CopyDepth as Stage>::INFO,
     <engine::SpinPixels as Stage>::INFO,
@@ -59,12 +69,16 @@ pub const STAGES: &[&StageInfo] = &[
     <pack::WriteCommands as Stage>::INFO,
     <pack::WriteIndices as Stage>::INFO,
     <pack::WriteInstances as Stage>::INFO,
+    <queries::TestNodes as Stage>::INFO,
+    <queries::TestObjects as Stage>::INFO,
     <roc::AssignRanges as Stage>::INFO,
     <roc::ListRanges as Stage>::INFO,
     <roc::MeasureBoxes as Stage>::INFO,
     <roc::SelectBoxes as Stage>::INFO,
     <roc::TestBoxes as Stage>::INFO,
     <roc::TestRange as Stage>::INFO,
+    <translucent::SelectBoxes as Stage>::INFO,
+    <translucent::WriteCommands as Stage>::INFO,
     <warp::BoundLevels as Stage>::INFO,
     <warp::BoundMotion as Stage>::INFO,
     <warp::ErodeDepth as Stage>::INFO,

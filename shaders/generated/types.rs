@@ -83,8 +83,11 @@ pub const PLACE_SELECTION_MASK: u32 = 3;
 /// At most so many depth ranges; there is one step more.
 pub const MOST_STEP_RANGES: u32 = 5;
 
-/// At most so many kinds of primitive, each of which has a draw of its own.
-pub const MOST_KINDS: u32 = 3;
+/// At most so many kinds of draw, by primitive, surface and sides: each has a draw of its own.
+pub const MOST_KINDS: u32 = 8;
+
+/// `LATER_KINDS` in GLSL.
+pub const LATER_KINDS: u32 = 7;
 
 /// A list of blocks, then: its first words are a grid of a work group a block, and their number; then a grid of an invocation a block.
 pub const LISTED_GRID: u32 = 4;
@@ -122,6 +125,18 @@ pub const FILTER_STRIP: u32 = 16;
 
 /// No object: the item buffer where nothing was drawn.
 pub const ITEM_NONE: u32 = 0xffffffff;
+
+/// What lies beyond a texture's borders.
+pub const WRAP_REPEAT: u32 = 0;
+
+/// `WRAP_MIRROR` in GLSL.
+pub const WRAP_MIRROR: u32 = 1;
+
+/// `WRAP_CLAMP` in GLSL.
+pub const WRAP_CLAMP: u32 = 2;
+
+/// Bits of Material.wrap for x; those for y follow.
+pub const WRAP_BITS: u32 = 2;
 
 /// `TREE_NONE` in GLSL.
 pub const TREE_NONE: u32 = 0xffffffff;
@@ -283,6 +298,34 @@ const _: () = {
     assert!(size_of::<FarthestShape>() == 16);
 };
 
+/// Where a base colour texture lies among the texels, and where what it covers is not there.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Material {
+    /// Of level 0; each level follows the one before, with half of its texels a side.
+    pub first_texel: u32,
+    /// `width` in GLSL.
+    pub width: u32,
+    /// `height` in GLSL.
+    pub height: u32,
+    /// 0: no texture.
+    pub levels: u32,
+    /// WRAP_\*, x in the lowest bits.
+    pub wrap: u32,
+    /// `cutoff` in GLSL.
+    pub cutoff: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(Material, first_texel) == 0);
+    assert!(std::mem::offset_of!(Material, width) == 4);
+    assert!(std::mem::offset_of!(Material, height) == 8);
+    assert!(std::mem::offset_of!(Material, levels) == 12);
+    assert!(std::mem::offset_of!(Material, wrap) == 16);
+    assert!(std::mem::offset_of!(Material, cutoff) == 20);
+    assert!(size_of::<Material>() == 24);
+};
+
 /// Where a mesh lies in the shared index and vertex buffers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -417,10 +460,8 @@ pub struct StepView {
     pub range_count: u32,
     /// Where a range ends, as a share of where the next one does.
     pub share: f32,
-    /// The first object of the second kind of primitive, and of the third; beyond all objects if there is none.
-    pub second_kind: u32,
-    /// `third_kind` in GLSL.
-    pub third_kind: u32,
+    /// The first object of the second kind, the third and so on; beyond all objects if there is none.
+    pub later_kinds: [u32; 7],
 }
 
 const _: () = {
@@ -431,9 +472,8 @@ const _: () = {
     assert!(std::mem::offset_of!(StepView, coarsest_level) == 128);
     assert!(std::mem::offset_of!(StepView, range_count) == 132);
     assert!(std::mem::offset_of!(StepView, share) == 136);
-    assert!(std::mem::offset_of!(StepView, second_kind) == 140);
-    assert!(std::mem::offset_of!(StepView, third_kind) == 144);
-    assert!(size_of::<StepView>() == 148);
+    assert!(std::mem::offset_of!(StepView, later_kinds) == 140);
+    assert!(size_of::<StepView>() == 168);
 };
 
 /// Where a texel of the last frame goes. A texel is a pixel, or the farthest of a block of pixels.

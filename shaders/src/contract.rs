@@ -68,6 +68,8 @@ pub enum BindingKind {
     StorageBuffer,
     /// A texture without a sampler, read with `texelFetch`.
     SampledImage,
+    /// A texture with the engine's one sampler (nearest, clamped to the edge), read with `textureGather`: four texels at once.
+    GatheredImage,
     /// An image read or written with `imageLoad`, `imageStore` or image atomics.
     StorageImage,
 }

@@ -49,7 +49,7 @@ fn touches(op: &Op) -> Vec<Touch> {
             all.push(touch(groups.id, Point::Indirect, true, false));
             all
         }
-        Op::Draw { stage: bound, draw, target: to } => {
+        Op::Draw { stage: bound, draw, target: to } | Op::Query { stage: bound, draw, target: to, .. } => {
             let mut all = stage(bound, Point::Drawing);
             all.push(touch(id(&draw.commands), Point::Indirect, true, false));
             all.extend(draw.count.map(|count| touch(count.id, Point::Indirect, true, false)));

@@ -36,7 +36,12 @@ fn faults(lab: &mut Lab, case: &Case, entry: &Entry, spoil: fn(&mut culling::Tes
 }
 
 fn methods_with_boxes() -> Vec<&'static Entry> {
-    METHODS.iter().filter(|entry| ["roc", "roc-iterative", "eovc"].contains(&entry.id)).collect()
+    METHODS
+        .iter()
+        .filter(|entry| {
+            ["roc", "roc-iterative", "eovc", "query-wait", "query-lag", "chc", "chc++", "nohc"].contains(&entry.id)
+        })
+        .collect()
 }
 
 #[test]

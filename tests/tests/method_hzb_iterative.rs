@@ -40,6 +40,31 @@ fn any_size_is_exact() {
 }
 
 #[test]
+fn what_is_no_longer_seen_is_no_longer_drawn() {
+    let gpu = gpu();
+    let case = worlds::walled(400);
+    let law = |subject: &Subject| laws::what_is_no_longer_seen_is_no_longer_drawn(&gpu, subject, &case);
+    assert_none(&law(&Subject::named("hzb-iterative")));
+    let never = Subject::named("hzb-iterative").with("every", "64");
+    assert!(!law(&never).is_empty(), "who is seen is not looked at again for 64 frames, and the law does not notice");
+}
+
+#[test]
+fn a_still_camera_has_only_drawn_who_owns_a_pixel() {
+    let gpu = gpu();
+    let case = worlds::walled(400);
+    let case = case.filmed(vec![case.shots[0]; 8]);
+    let mut lab = harness::Lab::new(&gpu, &case);
+    let (truths, sets) = lab.truths(&case.shots);
+    let mut method = lab.make(&Subject::named("hzb-iterative"), &sets);
+    let takes = lab.film(&mut *method, &case.shots);
+    let last = harness::lab::error_of(&truths[7], &takes[7]);
+    assert_eq!((last.false_negatives, last.false_positives, last.differing_pixels), (0, 0, 0));
+    let before = harness::lab::error_of(&truths[3], &takes[3]);
+    assert!(before.false_positives > 0, "hidden objects whose boxes show were drawn before, or this proves nothing");
+}
+
+#[test]
 fn what_a_wall_hides_is_culled() {
     let gpu = gpu();
     assert_none(&laws::what_a_wall_hides_is_culled(&gpu, &Subject::named("hzb-iterative"), &worlds::walled(400)));

@@ -18,6 +18,21 @@ fn exactly_the_visible_set_is_drawn() {
 }
 
 #[test]
+fn near_to_far_the_same_is_drawn() {
+    let gpu = gpu();
+    for case in worlds::special() {
+        let mut lab = harness::Lab::new(&gpu, &case);
+        let (truths, sets) = lab.truths(&case.shots);
+        let mut method = lab.make(&Subject::named("ref").with("order", "near"), &sets);
+        for (take, truth) in lab.film(&mut *method, &case.shots).iter().zip(&truths) {
+            let error = harness::lab::error_of(truth, take);
+            assert_eq!((error.false_negatives, error.false_positives), (0, 0), "{}", case.name);
+            assert_eq!(error.differing_pixels, 0, "{}", case.name);
+        }
+    }
+}
+
+#[test]
 fn without_visible_sets_it_says_what_is_missing() {
     let gpu = gpu();
     let lab = harness::Lab::new(&gpu, &worlds::walled(5));

@@ -3,7 +3,7 @@
 use culling::frustum::OPTIONS;
 use culling::hzb::Pyramid;
 use culling::{DrawList, Method, Options, Setup, View, World};
-use engine::{Buffer, Error, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
+use engine::{Buffer, Error, Faces, Frame, Gpu, IndexedIndirect, Placement, Primitives, Surface, Target};
 use harness::footprints::covered;
 use harness::{assert_caught, assert_none, gpu, laws, worlds, Lab, Subject};
 use shaders::types::{Bounds, DrawCommand, PyramidLevel, BLOCK_OBJECTS};
@@ -330,6 +330,8 @@ fn a_list_that_claims_more_than_it_holds_is_an_error() {
         count: Some(count.all()),
         max_draws: world.len() as u32,
         primitives: Primitives::Triangles,
+        faces: Faces::Both,
+        surface: Surface::Opaque,
     };
     let report = engine::FrameReport { draws: vec![draw], ..Default::default() };
     match culling::drawn_objects(&gpu, &world, &report) {

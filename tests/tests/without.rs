@@ -19,7 +19,8 @@ fn open(extra: Extra) -> Gpu {
 /// Every way to make and draw lists: methods that draw once, twice, by ranges, by boxes, by read-back, by all that there is.
 fn subjects() -> Vec<Subject> {
     let eovc = Subject::named("eovc");
-    let methods = ["none", "frustum", "hzb", "hzb-iterative", "roc", "roc-iterative", "woc-exact", "ref"];
+    let methods =
+        ["none", "frustum", "hzb", "hzb-iterative", "roc", "roc-iterative", "woc-exact", "query-wait", "chc++", "ref"];
     let mut subjects: Vec<Subject> = methods.into_iter().map(Subject::named).collect();
     subjects.extend([
         eovc.clone(),

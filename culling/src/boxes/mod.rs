@@ -7,7 +7,7 @@ pub mod twin;
 
 use crate::world::{View, World};
 use crate::Result;
-use engine::{Buffer, Extra, Frame, Gpu, IndexedIndirect, Placement, Primitives};
+use engine::{Buffer, Extra, Faces, Frame, Gpu, IndexedIndirect, Placement, Primitives, Surface};
 use glam::{DMat4, DVec3};
 use shaders::types::{BoxView, DrawCommand, PACK_CHUNK};
 use shaders::{pack, BufferRef, Stage};
@@ -62,6 +62,8 @@ impl BoxShape {
             count: self.draws.as_ref().map(Buffer::all),
             max_draws: draws,
             primitives: Primitives::Triangles,
+            faces: Faces::Both,
+            surface: Surface::Opaque,
         }
     }
 }

@@ -27,7 +27,7 @@ use crate::{Error, Method, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
 use groups::Groups;
 use shaders::types::{DrawCommand, FILTER_STRIP, OPEN_FRAMES};
-use shaders::{eovc, Stage};
+use shaders::{eovc, BufferRef, ImageRef, Stage};
 
 /// Frames of an unchanged view after which the lists hold: what is hidden leaves the early list one frame after it is drawn,
 /// and what it had let through may leave in the next two.
@@ -140,7 +140,7 @@ impl Method for Eovc {
         let counted = self.counters.read()?;
         let boxes = u64::from(self.groups.groups.read_len()?) + u64::from(self.groups.singles.read_len()?);
         let [rays, node_visits, early_stops] = [0, 1, 2].map(|counter| u64::from(counted[counter]));
-        Ok(Work { boxes, rays, node_visits, early_stops, queries: 0 })
+        Ok(Work { boxes, rays, node_visits, early_stops, ..Work::default() })
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
@@ -312,12 +312,7 @@ impl Eovc {
                 let needs = "the item buffer for occluder filtering; bind it, or set eovc.of=false".into();
                 return Err(Error::Missing { method: "eovc", needs });
             };
-            let strips = target.size[1].div_ceil(FILTER_STRIP);
-            let occluders = self.visible[self.now].all();
-            f.dispatch(
-                eovc::FilterOccluders { owners, occluders, size_px: target.size, strips },
-                strips * target.size[0],
-            );
+            filter_occluders(f, owners, target.size, self.visible[self.now].all());
         } else {
             let reason = if self.filters() { "filtered a few frames ago" } else { "occluder filtering is off" };
             f.skip(eovc::FilterOccluders::INFO.name, reason);
@@ -356,3 +351,9 @@ impl Eovc {
 
 const NO_OBJECTS: &str = "no objects";
 const NO_GROUPS: &str = "no groups";
+
+/// Flags whoever owns a pixel of an item buffer of this size (EOVC thesis III.6.2).
+pub(crate) fn filter_occluders(f: &mut Frame, owners: ImageRef, size_px: [u32; 2], occluders: BufferRef<u32>) {
+    let strips = [size_px[0].div_ceil(2), size_px[1].div_ceil(FILTER_STRIP)];
+    f.dispatch(eovc::FilterOccluders { owners, occluders, size_px, strips }, strips[0] * strips[1]);
+}

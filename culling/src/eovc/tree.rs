@@ -16,6 +16,8 @@ pub struct Tree {
     nodes: Buffer<TreeNode>,
     leaves: Buffer<u32>,
     unbounded: Vec<u32>,
+    flat: Vec<TreeNode>,
+    builds: u32,
     revision: u64,
 }
 
@@ -42,6 +44,8 @@ impl Tree {
             options,
             flags,
             unbounded,
+            flat: nodes,
+            builds: 1,
             revision: world.revision(),
         })
     }
@@ -58,15 +62,27 @@ impl Tree {
             // The same objects have bounds as before, or the tree would not fit its buffers.
             if bvh.nodes().len() == self.bvh.nodes().len() {
                 self.bvh = bvh;
+                self.builds += 1;
                 self.leaves.write(self.bvh.leaf_of_object())?;
             }
         }
-        Ok(self.nodes.write(&flatten(&self.bvh, &self.flags))?)
+        self.flat = flatten(&self.bvh, &self.flags);
+        Ok(self.nodes.write(&self.flat)?)
     }
 
     /// The hierarchy on the host.
     pub fn host(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// The nodes as the device has them, on the host.
+    pub fn host_nodes(&self) -> &[TreeNode] {
+        &self.flat
+    }
+
+    /// How often the tree was built: nodes keep their numbers until it is built anew.
+    pub fn builds(&self) -> u32 {
+        self.builds
     }
 
     /// 1 for each object that is not in the tree and must count as visible.

@@ -1,5 +1,6 @@
 //! `frustum`: view-frustum culling of world boxes on the GPU (Zachmann, VFC; GPU Gems 29.6.4).
 
+pub mod bvh;
 pub mod twin;
 
 use crate::pack::DrawList;

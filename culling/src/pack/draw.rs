@@ -2,7 +2,7 @@
 
 use super::DrawList;
 use crate::world::{LastToFirst, View, World};
-use engine::{Frame, Target};
+use engine::{Frame, Surface, Target};
 use shaders::{draw, BufferRef};
 
 impl World {
@@ -13,9 +13,10 @@ impl World {
         }
     }
 
-    /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it.
+    /// Draws the depth of what a list holds and nothing else, ahead of the draws that show it. Not of masked objects: that two
+    /// pipelines discard the same fragments is promised by nobody, and depth where nothing is drawn would hide what shows there.
     pub fn draw_depth(&self, f: &mut Frame, list: &DrawList, view: &View, target: &Target) {
-        for indirect in list.draws(self) {
+        for indirect in list.draws(self).filter(|draw| draw.surface == Surface::Opaque) {
             let stage = draw::Depth { view: view.gpu() };
             f.draw_unshown(stage, indirect, &target.depth_only());
         }

@@ -196,15 +196,9 @@ impl DrawList {
             // A count that never changes where all commands are drawn, because draws with and without one must not be mixed
             // (see `IndexedIndirect`).
             let count = self.everything.get(index).unwrap_or(&self.totals[index]);
-            IndexedIndirect {
-                vertices: world.vertices().into(),
-                instances: world.objects().into(),
-                indices: world.indices().into(),
-                commands: self.commands.all().from(range.first as usize).into(),
-                count: if exact.is_some() { None } else { Some(count.all()) },
-                max_draws: exact.unwrap_or(range.count),
-                primitives: range.primitives,
-            }
+            let commands = self.commands.all().from(range.first as usize);
+            let draw = world.multi_draw(range, commands, if exact.is_some() { None } else { Some(count.all()) });
+            IndexedIndirect { max_draws: exact.unwrap_or(range.count), ..draw }
         })
     }
 }

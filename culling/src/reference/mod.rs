@@ -7,19 +7,25 @@ pub use cache::{load, save};
 pub use sets::VisibleSets;
 
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
-use engine::{Buffer, Frame, IndexedIndirect, Placement, Target};
+use engine::{Buffer, Frame, Placement, Target};
 use shaders::types::DrawCommand;
 use shaders::ResourceId;
 use std::sync::Arc;
 
-/// No options.
-pub const OPTIONS: &[OptionInfo] = &[];
+/// In which order the visible set is drawn.
+pub const OPTIONS: &[OptionInfo] = &[OptionInfo {
+    name: "order",
+    default: "scene",
+    values: "scene|near",
+    help: "draw in the scene's order, or by where boxes begin along the view, near to far",
+}];
 
 struct Reference {
     visible: Arc<VisibleSets>,
     all: Vec<DrawCommand>,
     commands: Buffer<DrawCommand>,
     counts: Vec<Buffer<u32>>,
+    near_to_far: bool,
     world: ResourceId,
 }
 
@@ -36,6 +42,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         all: setup.world.read_all_commands()?,
         commands: Buffer::new(setup.gpu, "ref.commands", setup.world.len(), Placement::Upload)?,
         counts: (0..setup.world.ranges().len()).map(count).collect::<std::result::Result<_, _>>()?,
+        near_to_far: setup.options.text("order") == "near",
         world: setup.world.id(),
     }))
 }
@@ -55,12 +62,14 @@ impl Method for Reference {
         let mut commands = vec![DrawCommand::default(); world.len()];
         for (range, total) in world.ranges().iter().zip(&mut self.counts) {
             let objects = range.first as usize..(range.first + range.count) as usize;
-            let mut count = 0;
-            for object in objects.filter(|object| visible.contains(*object)) {
-                commands[range.first as usize + count] = self.all[object];
-                count += 1;
+            let mut drawn: Vec<usize> = objects.filter(|object| visible.contains(*object)).collect();
+            if self.near_to_far {
+                drawn.sort_by(|one, other| begin_of(*one, world, view).total_cmp(&begin_of(*other, world, view)));
             }
-            total.write(&[count as u32])?;
+            for (place, object) in drawn.iter().enumerate() {
+                commands[range.first as usize + place] = self.all[*object];
+            }
+            total.write(&[drawn.len() as u32])?;
         }
         self.commands.write(&commands)?;
         Ok(())
@@ -70,17 +79,23 @@ impl Method for Reference {
         world.update(f);
         f.clear(target);
         for (range, total) in world.ranges().iter().zip(&self.counts) {
-            let draw = IndexedIndirect {
-                vertices: world.vertices().into(),
-                instances: world.objects().into(),
-                indices: world.indices().into(),
-                commands: self.commands.all().from(range.first as usize).into(),
-                count: Some(total.all()),
-                max_draws: range.count,
-                primitives: range.primitives,
-            };
+            let commands = self.commands.all().from(range.first as usize);
+            let draw = world.multi_draw(range, commands, Some(total.all()));
             world.draw_indirect(f, draw, view, target);
         }
         Ok(())
+    }
+}
+
+/// Where an object's box begins, metres along the view; 0 where that is no number.
+fn begin_of(object: usize, world: &World, view: &View) -> f64 {
+    let bounds = world.host_bounds()[object];
+    let forward = view.pose.rotation * glam::DVec3::NEG_Z;
+    let (middle, half) = (bounds.centre() - view.pose.position, (bounds.max - bounds.min) * 0.5);
+    let begin = forward.dot(middle) - forward.abs().dot(half);
+    if begin > 0.0 {
+        begin
+    } else {
+        0.0
     }
 }

@@ -211,14 +211,9 @@ impl RangeLists {
         total: usize,
     ) -> impl Iterator<Item = IndexedIndirect> + 'a {
         self.assert_made_for(world);
-        self.kinds.iter().map(move |kind| IndexedIndirect {
-            vertices: world.vertices().into(),
-            instances: world.objects().into(),
-            indices: world.indices().into(),
-            commands: commands.all().from(range * self.room + kind.objects.first as usize).into(),
-            count: Some(kind.totals.all().from(total)),
-            max_draws: kind.objects.count,
-            primitives: kind.objects.primitives,
+        self.kinds.iter().map(move |kind| {
+            let commands = commands.all().from(range * self.room + kind.objects.first as usize);
+            world.multi_draw(&kind.objects, commands, Some(kind.totals.all().from(total)))
         })
     }
 

@@ -22,7 +22,7 @@ pub struct Drawn {
 /// # Errors
 /// A list that claims more commands than there is room for: a dropped draw must not pass for good culling.
 pub fn drawn_objects(gpu: &Gpu, world: &World, report: &FrameReport) -> Result<Drawn> {
-    let mut drawn = Drawn { objects: vec![false; world.len()], ..Drawn::default() };
+    let mut drawn = Drawn { objects: vec![false; world.total()], ..Drawn::default() };
     for draw in &report.draws {
         let count = match draw.count {
             Some(count) => gpu.read_bound::<u32>(&Bound::from(count))?.first().copied().unwrap_or(0),

@@ -1,7 +1,9 @@
 //! A scene on the GPU: vertices, indices, objects, bounds, and what moves them.
 
 mod blocks;
+mod detail;
 mod drawn;
+mod draws;
 mod order;
 mod still;
 mod ties;
@@ -18,14 +20,35 @@ pub use view::{split, View};
 
 use crate::Result;
 use blocks::Blocks;
-use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Primitives, Target};
+use detail::Detail;
+use engine::{Buffer, Faces, Frame, Gpu, Placement, Primitives, Surface};
 use glam::DAffine3;
 use scenes::{Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
 use shaders::{draw, frustum, world, BufferRef, ResourceId, Stage};
 
-/// Objects that lie side by side and are drawn with the same kind of primitive.
+/// What of a scene's materials is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// Each object in one colour, Lambert-shaded. What is masked is there as a whole, or not at all: by its colour's alpha.
+    Lambert,
+    /// Base colour textures and vertex colours too.
+    Textured,
+}
+
+impl Shading {
+    /// What a scene has.
+    pub fn of(scene: &Scene) -> Self {
+        if scene.has_textures() {
+            Shading::Textured
+        } else {
+            Shading::Lambert
+        }
+    }
+}
+
+/// Objects that lie side by side and are drawn in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range {
     /// First object.
@@ -34,9 +57,14 @@ pub struct Range {
     pub count: u32,
     /// Their primitives.
     pub primitives: Primitives,
+    /// Which sides of them show.
+    pub faces: Faces,
+    /// What they do to what lies behind them.
+    pub surface: Surface,
 }
 
-/// A scene on the GPU. Triangles come before lines and lines before points, what moves after what stays; beyond that objects keep the
+/// A scene on the GPU. Translucent objects come last, after all that methods cull; see [`crate::translucent`]. Triangles come before lines and lines before points, masked ones after opaque
+/// ones, those with one side after those with two, what moves after what stays; beyond that objects keep the
 /// scene's order, unless that puts far from each other what lies near each other: then they lie along a curve through space.
 pub struct World {
     vertices: Buffer<ObjectsVertex>,
@@ -49,6 +77,8 @@ pub struct World {
     moves: Option<Buffer<MovedObject>>,
     blocks: Blocks,
     ranges: Vec<Range>,
+    /// Materials; none if each object has one colour.
+    detail: Option<Detail>,
     host: Host,
 }
 
@@ -59,6 +89,14 @@ struct Host {
     bounds: WorldBounds,
     boxes: Vec<scenes::Aabb>,
     object_meshes: Vec<u32>,
+    /// By object: its mesh in the scene.
+    scene_meshes: Vec<u32>,
+    /// Objects before the translucent ones.
+    solid: usize,
+    /// How each of the translucent ones is drawn.
+    translucent_kinds: Vec<Range>,
+    /// Those of `transforms` that move objects before the translucent ones.
+    solid_moves: Vec<usize>,
     meshes: Vec<MeshRange>,
     indices: Vec<u32>,
     static_objects: Vec<Object>,
@@ -71,18 +109,33 @@ struct Host {
 }
 
 impl World {
-    /// Uploads a scene at time 0.
+    /// Uploads a scene at time 0, to be shaded as what it has.
     ///
     /// # Errors
     /// A scene that is broken or too large, or a device without room for it.
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self> {
+        Self::shaded(gpu, scene, Shading::of(scene))
+    }
+
+    /// Uploads a scene at time 0, to be shaded in a way of one's choice.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn shaded(gpu: &Gpu, scene: &Scene, shading: Shading) -> Result<Self> {
         scene.check()?;
-        let flat = upload::flatten(scene);
+        let flat = upload::flatten(scene, shading);
         let storage = Placement::Storage;
         let moving = scene.motion.dynamic_objects().len();
         let object_of_scene = upload::inverse(&flat.scene_object);
         let moving_objects: Vec<u32> =
             scene.motion.dynamic_objects().iter().map(|object| object_of_scene[*object as usize]).collect();
+        let solid = flat.solid;
+        let detail = match shading {
+            Shading::Lambert => None,
+            Shading::Textured => Some(Detail::new(gpu, scene, &flat.vertices, &flat.scene_object)?),
+        };
+        let still_or_solid = |object: &&u32| (**object as usize) < solid;
+        let solid_moving: Vec<u32> = moving_objects.iter().filter(still_or_solid).copied().collect();
         let moves = if moving == 0 { None } else { Some(Buffer::new(gpu, "world.moves", moving, Placement::Upload)?) };
         let mut transforms = Vec::new();
         scene.motion.transforms_at(0.0, &mut transforms);
@@ -95,14 +148,21 @@ impl World {
             object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
             all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
             moves,
-            blocks: Blocks::new(gpu, &flat.bounds, &moving_objects)?,
+            blocks: Blocks::new(gpu, &flat.bounds[..solid], &solid_moving)?,
+            detail,
             ranges: flat.ranges,
             host: Host {
-                object_of_scene,
                 scene_object: flat.scene_object,
                 bounds: flat.world_bounds,
                 boxes: flat.boxes,
                 object_meshes: flat.object_meshes,
+                scene_meshes: flat.scene_meshes,
+                solid,
+                translucent_kinds: flat.translucent_kinds,
+                solid_moves: (0..transforms.len())
+                    .filter(|at| (object_of_scene[transforms[*at].0 as usize] as usize) < solid)
+                    .collect(),
+                object_of_scene,
                 meshes: flat.meshes,
                 indices: flat.indices,
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
@@ -116,12 +176,17 @@ impl World {
         })
     }
 
-    /// Objects.
+    /// Objects that culling methods see: all but the translucent ones, which hide nothing and are drawn last.
     pub fn len(&self) -> usize {
+        self.host.solid
+    }
+
+    /// All objects, translucent ones too, which come last.
+    pub fn total(&self) -> usize {
         self.host.scene_object.len()
     }
 
-    /// True if there is nothing to draw.
+    /// True if there is nothing for culling methods to see.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -164,7 +229,7 @@ impl World {
             .iter()
             .map(|(scene_object, transform)| {
                 let index = host.object_of_scene[*scene_object as usize];
-                let mesh = host.object_meshes[index as usize];
+                let mesh = host.scene_meshes[index as usize];
                 let still = host.static_objects[index as usize];
                 let object = Object { colour: still.colour, ..upload::object(transform, still.colour) };
                 host.boxes[index as usize] = host.bounds.of(mesh, transform);
@@ -217,67 +282,16 @@ impl World {
         f.skip(frustum::TestBlocks::INFO.name, reason);
     }
 
-    /// Draws every object.
-    pub fn draw_all(&self, f: &mut Frame, view: &View, target: &Target) {
-        self.draw_commands(f, self.all_commands.all(), view, target);
-    }
-
-    /// Draws from a command for each object, in object order; a command of no instances draws nothing.
-    pub fn draw_commands(&self, f: &mut Frame, commands: BufferRef<DrawCommand>, view: &View, target: &Target) {
-        if self.is_empty() {
-            f.skip(draw::Objects::INFO.name, "no objects");
-        }
-        for range in &self.ranges {
-            let draw = IndexedIndirect {
-                vertices: self.vertices.all().into(),
-                instances: self.objects.all().into(),
-                indices: self.indices.all().into(),
-                commands: commands.from(range.first as usize).into(),
-                count: None,
-                max_draws: range.count,
-                primitives: range.primitives,
-            };
-            self.draw_indirect(f, draw, view, target);
-        }
-    }
-
-    /// Draws the lists of a finished frame once more, in the same order. They must still be as they were.
-    pub fn draw_again(&self, f: &mut Frame, draws: &[IndexedIndirect], view: &View, target: &Target) {
-        for draw in draws {
-            self.draw_indirect(f, *draw, view, target);
-        }
-    }
-
-    pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
-        let view = view.gpu();
-        // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
-        if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            f.draw(draw::Overdraw { view }, draw, target);
-        } else if target.item.is_some() {
-            f.draw(draw::ObjectsAndItems { view }, draw, target);
-        } else {
-            f.draw(draw::Objects { view }, draw, target);
-        }
-    }
-
-    pub(crate) fn draw_indirect_flagged(
-        &self,
-        f: &mut Frame,
-        draw: IndexedIndirect,
-        visible: BufferRef<u32>,
-        view: &View,
-        target: &Target,
-    ) {
-        let view = view.gpu();
-        if target.item.is_some() {
-            f.draw(draw::ObjectsItemsAndFlags { visible, view }, draw, target);
-        } else {
-            f.draw(draw::ObjectsAndFlags { visible, view }, draw, target);
-        }
-    }
-
-    /// World bounds by object.
+    /// World bounds by object, of those that culling methods see.
     pub fn bounds(&self) -> BufferRef<Bounds> {
+        let all = self.bounds.all();
+        // Nothing cannot be bound.
+        let size = (self.len().max(1) * size_of::<Bounds>()) as u64;
+        BufferRef { size: all.size.min(size), ..all }
+    }
+
+    /// World bounds of all objects.
+    pub fn all_bounds(&self) -> BufferRef<Bounds> {
         self.bounds.all()
     }
 
@@ -306,13 +320,18 @@ impl World {
         self.indices.all()
     }
 
-    /// Objects by kind of primitive.
+    /// Objects by how they are drawn; translucent ones are not among them.
     pub fn ranges(&self) -> &[Range] {
         &self.ranges
     }
 
-    /// Bounds in the world of every object, in f64, where they are now.
+    /// Bounds in the world of the objects that culling methods see, in f64, where they are now.
     pub fn host_bounds(&self) -> &[scenes::Aabb] {
+        &self.host.boxes[..self.host.solid]
+    }
+
+    /// The same of all objects.
+    pub fn all_host_bounds(&self) -> &[scenes::Aabb] {
         &self.host.boxes
     }
 
@@ -321,15 +340,23 @@ impl World {
         Ok(self.bounds.read()?)
     }
 
-    /// Objects that can move, and where the last call of [`World::set_time`] put them, in an order that never changes.
+    /// Objects that can move, of those that culling methods see, and where the last call of [`World::set_time`] put them, in an order that never changes.
     pub fn moving(&self) -> impl ExactSizeIterator<Item = (u32, DAffine3)> + '_ {
         let object = |scene_object: u32| self.host.object_of_scene[scene_object as usize];
-        self.host.transforms.iter().map(move |(scene_object, transform)| (object(*scene_object), *transform))
+        let moved = |at: &usize| self.host.transforms[*at];
+        self.host.solid_moves.iter().map(moved).map(move |(scene_object, transform)| (object(scene_object), transform))
     }
 
-    /// A command for every object; for tests and the ideal method.
+    /// How a translucent object is drawn, as a range of none.
+    pub(crate) fn translucent_kind(&self, object: u32) -> Range {
+        self.host.translucent_kinds[object as usize - self.host.solid]
+    }
+
+    /// A command for every object that culling methods see.
     pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
-        Ok(self.all_commands.read()?)
+        let mut commands = self.all_commands.read()?;
+        commands.truncate(self.len());
+        Ok(commands)
     }
 }
 

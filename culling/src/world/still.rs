@@ -36,6 +36,11 @@ impl Still {
         Still { enabled: options.flag("skip"), settled_after: 1, unchanged: 0, last: None }
     }
 
+    /// Never holds.
+    pub fn never() -> Self {
+        Still { enabled: false, settled_after: 1, unchanged: 0, last: None }
+    }
+
     /// For lists that also depend on earlier frames: they no longer change from the `frames`th frame on that sees what the
     /// frame before it saw.
     pub fn settled_after(self, frames: u32) -> Self {

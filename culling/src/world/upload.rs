@@ -1,8 +1,8 @@
 //! From a scene's data to the GPU's: order, compression, outward rounding.
 
 use super::order::{order, Placed};
-use super::{split, Range};
-use engine::Primitives;
+use super::{split, Range, Shading};
+use engine::{Faces, Primitives, Surface};
 use glam::{DAffine3, DVec3, Vec3};
 use scenes::{Aabb, Mesh, Scene, Topology, WorldBounds};
 use shaders::draw::ObjectsVertex;
@@ -16,24 +16,124 @@ pub(super) struct Flat {
     pub(super) objects: Vec<Object>,
     pub(super) bounds: Vec<Bounds>,
     pub(super) boxes: Vec<Aabb>,
+    /// By object: what it is drawn from, and its mesh in the scene, which may be wound the other way round.
     pub(super) object_meshes: Vec<u32>,
+    pub(super) scene_meshes: Vec<u32>,
     pub(super) commands: Vec<DrawCommand>,
+    /// Without those of translucent objects.
     pub(super) ranges: Vec<Range>,
+    /// How each translucent object is drawn, as ranges of none.
+    pub(super) translucent_kinds: Vec<Range>,
+    /// Objects before the translucent ones.
+    pub(super) solid: usize,
     pub(super) scene_object: Vec<u32>,
     pub(super) world_bounds: WorldBounds,
 }
 
-pub(super) fn flatten(scene: &Scene) -> Flat {
+/// How an object is drawn. In this order: translucent ones last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Kind {
+    pub(super) primitives: Primitives,
+    pub(super) faces: Faces,
+    pub(super) surface: Surface,
+}
+
+impl Kind {
+    fn of(object: &scenes::Object, mesh: &Mesh, shading: Shading) -> Self {
+        let primitives = match mesh.topology {
+            Topology::Triangles => Primitives::Triangles,
+            Topology::Lines => Primitives::Lines,
+            Topology::Points => Primitives::Points,
+        };
+        let one_sided = object.surface.single_sided && primitives == Primitives::Triangles;
+        let surface = match (object.translucent, is_cut_out(object, mesh, shading)) {
+            (true, _) => Surface::Translucent,
+            (false, true) => Surface::Masked,
+            (false, false) => Surface::Opaque,
+        };
+        Kind { primitives, faces: if one_sided { Faces::Front } else { Faces::Both }, surface }
+    }
+
+    fn range(self, first: u32, count: u32) -> Range {
+        Range { first, count, primitives: self.primitives, faces: self.faces, surface: self.surface }
+    }
+
+    fn order(self) -> u32 {
+        let translucent = self.surface == Surface::Translucent;
+        let masked = self.surface == Surface::Masked;
+        u32::from(translucent) << 4
+            | (self.primitives as u32) << 2
+            | u32::from(masked) << 1
+            | u32::from(self.faces == Faces::Front)
+    }
+}
+
+/// Masked, by an alpha that is not the same everywhere.
+fn is_cut_out(object: &scenes::Object, mesh: &Mesh, shading: Shading) -> bool {
+    shading == Shading::Textured && object.masked && (object.surface.texture.is_some() || !mesh.colours.is_empty())
+}
+
+/// Masked, and of one alpha that is not enough: not there at all.
+fn is_absent(object: &scenes::Object, mesh: &Mesh, shading: Shading) -> bool {
+    object.masked
+        && !object.translucent
+        && !is_cut_out(object, mesh, shading)
+        && object.colour[3] < object.surface.cutoff
+}
+
+/// The meshes that objects are drawn from: those of the scene, and what mirrored and absent objects need beside them.
+struct Variants {
+    meshes: Vec<MeshRange>,
+    indices: Vec<u32>,
+    turned: std::collections::HashMap<u32, u32>,
+    empty: Option<u32>,
+}
+
+impl Variants {
+    /// The mesh for an object. A mirrored transform turns triangles round on the screen, so that those of one side are wound the
+    /// other way round first.
+    fn mesh_of(&mut self, object: &scenes::Object, kind: Kind, absent: bool) -> u32 {
+        let mesh = object.mesh;
+        if absent {
+            return *self.empty.get_or_insert_with(|| add(&mut self.meshes, MeshRange::default()));
+        }
+        if kind.faces == Faces::Both || object.world_from_object.matrix3.determinant() >= 0.0 {
+            return mesh;
+        }
+        if let Some(turned) = self.turned.get(&mesh) {
+            return *turned;
+        }
+        let range = self.meshes[mesh as usize];
+        let first_index = self.indices.len() as u32;
+        for corner in (0..range.index_count as usize).step_by(3).map(|first| range.first_index as usize + first) {
+            let [a, b, c] = [0, 1, 2].map(|side| self.indices[corner + side]);
+            self.indices.extend([a, c, b]);
+        }
+        let turned = add(&mut self.meshes, MeshRange { first_index, ..range });
+        self.turned.insert(mesh, turned);
+        turned
+    }
+}
+
+fn add(meshes: &mut Vec<MeshRange>, mesh: MeshRange) -> u32 {
+    meshes.push(mesh);
+    // At most three for each of the scene's.
+    (meshes.len() - 1) as u32
+}
+
+pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
     let (vertices, indices, meshes) = geometry(&scene.meshes);
+    let mut variants = Variants { meshes, indices, turned: Default::default(), empty: None };
+    let kind_of = |object: &scenes::Object| Kind::of(object, &scene.meshes[object.mesh as usize], shading);
     let world_bounds = WorldBounds::new(scene);
     let placed = |object: &scenes::Object| Placed {
         bounds: world_bounds.of(object.mesh, &object.world_from_object),
-        kind: scene.meshes[object.mesh as usize].topology as u32,
+        kind: kind_of(object).order(),
         moves: object.dynamic,
     };
     let scene_object = order(&scene.objects.iter().map(placed).collect::<Vec<_>>());
     let (mut objects, mut bounds, mut object_meshes, mut commands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut boxes = Vec::new();
+    let (mut boxes, mut scene_meshes) = (Vec::new(), Vec::new());
     for (index, scene_index) in scene_object.iter().enumerate() {
         let from = &scene.objects[*scene_index as usize];
         let wide = scene.meshes[from.mesh as usize].topology != Topology::Triangles;
@@ -42,8 +142,11 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
         let aabb = world_bounds.of(from.mesh, &from.world_from_object);
         bounds.push(self::bounds(&aabb, &from.world_from_object, flags));
         boxes.push(aabb);
-        object_meshes.push(from.mesh);
-        let mesh = meshes[from.mesh as usize];
+        let absent = is_absent(from, &scene.meshes[from.mesh as usize], shading);
+        let drawn_mesh = variants.mesh_of(from, kind_of(from), absent);
+        object_meshes.push(drawn_mesh);
+        scene_meshes.push(from.mesh);
+        let mesh = variants.meshes[drawn_mesh as usize];
         commands.push(DrawCommand {
             index_count: mesh.index_count,
             instance_count: 1,
@@ -52,8 +155,9 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
             first_instance: index as u32,
         });
     }
-    let ranges =
-        ranges(scene_object.iter().map(|object| scene.meshes[scene.objects[*object as usize].mesh as usize].topology));
+    let kinds: Vec<Kind> = scene_object.iter().map(|object| kind_of(&scene.objects[*object as usize])).collect();
+    let solid = kinds.iter().filter(|kind| kind.surface != Surface::Translucent).count();
+    let Variants { meshes, indices, .. } = variants;
     Flat {
         vertices,
         indices,
@@ -62,8 +166,11 @@ pub(super) fn flatten(scene: &Scene) -> Flat {
         bounds,
         boxes,
         object_meshes,
+        scene_meshes,
         commands,
-        ranges,
+        ranges: ranges(&kinds[..solid]),
+        translucent_kinds: kinds[solid..].iter().map(|kind| kind.range(0, 0)).collect(),
+        solid,
         scene_object,
         world_bounds,
     }
@@ -87,17 +194,12 @@ fn geometry(meshes: &[Mesh]) -> (Vec<ObjectsVertex>, Vec<u32>, Vec<MeshRange>) {
     (vertices, indices, ranges)
 }
 
-fn ranges(topologies: impl Iterator<Item = Topology>) -> Vec<Range> {
+fn ranges(kinds: &[Kind]) -> Vec<Range> {
     let mut ranges: Vec<Range> = Vec::new();
-    for (index, topology) in topologies.enumerate() {
-        let primitives = match topology {
-            Topology::Triangles => Primitives::Triangles,
-            Topology::Lines => Primitives::Lines,
-            Topology::Points => Primitives::Points,
-        };
+    for (index, kind) in kinds.iter().enumerate() {
         match ranges.last_mut() {
-            Some(last) if last.primitives == primitives => last.count += 1,
-            _ => ranges.push(Range { first: index as u32, count: 1, primitives }),
+            Some(last) if *last == kind.range(last.first, last.count) => last.count += 1,
+            _ => ranges.push(kind.range(index as u32, 1)),
         }
     }
     ranges
@@ -207,10 +309,12 @@ mod tests {
     }
 
     #[test]
-    fn ranges_follow_topology() {
-        let mixed = [Topology::Triangles, Topology::Triangles, Topology::Points];
-        let found = ranges(mixed.into_iter());
-        assert_eq!(found[0], Range { first: 0, count: 2, primitives: Primitives::Triangles });
-        assert_eq!(found[1], Range { first: 2, count: 1, primitives: Primitives::Points });
+    fn ranges_follow_kinds() {
+        let kind = |primitives, faces| Kind { primitives, faces, surface: Surface::Opaque };
+        let (triangles, points) = (kind(Primitives::Triangles, Faces::Both), kind(Primitives::Points, Faces::Both));
+        let found = ranges(&[triangles, triangles, kind(Primitives::Triangles, Faces::Front), points]);
+        assert_eq!(found.iter().map(|range| (range.first, range.count)).collect::<Vec<_>>(), [(0, 2), (2, 1), (3, 1)]);
+        assert_eq!(found[2].primitives, Primitives::Points);
+        assert!(triangles.order() < kind(Primitives::Triangles, Faces::Front).order());
     }
 }

@@ -73,7 +73,7 @@ impl<'a> Accessors<'a> {
         Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
-    /// Reads vectors of `N` numbers; `N` is 1 for SCALAR, 3 for VEC3, 4 for VEC4.
+    /// Reads vectors of `N` numbers; `N` is 1 for SCALAR, 2 for VEC2, 3 for VEC3, 4 for VEC4.
     pub(super) fn vectors<const N: usize>(&self, index: Index<Accessor>, allowed: Allowed) -> Outcome<Vec<[f32; N]>> {
         let read = || {
             let component = self.component(index)?;
@@ -228,7 +228,8 @@ impl<'a> Accessors<'a> {
         Ok(ItemIter::new(bytes, stride))
     }
 
-    fn view(&self, index: Index<View>) -> Outcome<&'a [u8]> {
+    /// The bytes of a buffer view.
+    pub(super) fn view(&self, index: Index<View>) -> Outcome<&'a [u8]> {
         let view = element(&self.document.root, index, "buffer view")?;
         element(&self.document.root, view.buffer, "buffer")?;
         let Some(bytes) = &self.buffers[view.buffer.value()] else {

@@ -50,7 +50,8 @@ fn exactly(bytes: Bytes<'_>, length: u64) -> Outcome<Bytes<'_>> {
     }))
 }
 
-fn fetch(uri: &str, length: u64, folder: &Path) -> Outcome<Vec<u8>> {
+/// The bytes that a URI stands for, at most `length` of a file.
+pub(super) fn fetch(uri: &str, length: u64, folder: &Path) -> Outcome<Vec<u8>> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decode_data(data);
     }

@@ -40,6 +40,14 @@ impl Fault {
         }
     }
 
+    /// What is wrong, in one line without the file: for what a file can be read without.
+    pub(super) fn to_line(&self) -> String {
+        match self {
+            Fault::Broken(fault) | Fault::TooLarge(fault) => one_line(fault, LONGEST_FAULT),
+            Fault::Unsupported { what, remedy } => one_line(&format!("{what}; {remedy}"), LONGEST_FAULT),
+        }
+    }
+
     /// The error for the user.
     pub(super) fn in_file(self, path: &Path) -> SceneError {
         match self {

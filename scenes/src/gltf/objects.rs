@@ -3,18 +3,18 @@
 use super::accessor::{Accessors, Allowed};
 use super::document::Document;
 use super::fault::{broken, element, label, one_line, Fault, Outcome};
+use super::materials::{Look, Materials};
 use super::mesh;
 use super::tree::{node_label, placed, unit, Tree};
 use crate::check::MOST_OBJECTS;
 use crate::model::{Mesh, Object};
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::accessor::Accessor;
-use gltf::json::material::{AlphaMode, Material};
-use gltf::json::validation::Checked;
 use gltf::json::{Index, Mesh as FileMesh};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
 
 /// Longest object or mesh name kept, in characters: a node's name is copied to each of its instances.
 const LONGEST_NAME: usize = 200;
@@ -23,9 +23,7 @@ const LONGEST_NAME: usize = 200;
 #[derive(Clone, Copy)]
 struct Part {
     mesh: u32,
-    colour: [f32; 4],
-    translucent: bool,
-    masked: bool,
+    look: Look,
 }
 
 /// An object's place, for motion.
@@ -49,6 +47,8 @@ pub(super) struct Objects<'a> {
     /// By mesh, and by node if the node has morph weights of its own.
     parts: HashMap<(Index<FileMesh>, Option<usize>), Vec<Part>>,
     indices: usize,
+    /// The materials of those meshes, and their textures.
+    pub materials: Materials<'a>,
     /// What has been found so far.
     pub meshes: Vec<Mesh>,
     pub objects: Vec<Object>,
@@ -56,9 +56,10 @@ pub(super) struct Objects<'a> {
 }
 
 impl<'a> Objects<'a> {
-    pub(super) fn new(document: &'a Document, accessors: &'a Accessors<'a>) -> Self {
+    pub(super) fn new(document: &'a Document, accessors: &'a Accessors<'a>, folder: &'a Path) -> Self {
         let (meshes, objects, placements) = (Vec::new(), Vec::new(), Vec::new());
-        Objects { document, accessors, parts: HashMap::new(), indices: 0, meshes, objects, placements }
+        let materials = Materials::new(document, accessors, folder);
+        Objects { document, accessors, parts: HashMap::new(), indices: 0, materials, meshes, objects, placements }
     }
 
     /// Adds the objects of one node.
@@ -90,7 +91,7 @@ impl<'a> Objects<'a> {
                         node_label(self.document, node)
                     ));
                 }
-                let Part { mesh, colour, translucent, masked } = *part;
+                let Part { mesh, look: Look { colour, translucent, masked, surface } } = *part;
                 self.objects.push(Object {
                     name,
                     mesh,
@@ -99,6 +100,7 @@ impl<'a> Objects<'a> {
                     dynamic: false,
                     translucent,
                     masked,
+                    surface,
                 });
                 self.placements.push(Placement { node, node_from_object });
             }
@@ -126,35 +128,18 @@ impl<'a> Objects<'a> {
             let said_mode = || document.said(&format!("/meshes/{index}/primitives/{at}/mode"));
             let read = mesh::read(self.accessors, primitive, weights, name, &mut self.indices, said_mode)
                 .map_err(|fault| fault.within(place))?;
-            let Some(read) = read else {
+            let Some(mut read) = read else {
                 tracing::warn!("{} has no positions and is not drawn", place());
                 continue;
             };
             // At most one mesh an object and index, both far below 2^32.
             let mesh = self.meshes.len() as u32;
+            let look = self.materials.apply(primitive, &mut read).map_err(|fault| fault.within(place))?;
             self.meshes.push(read);
-            parts.push(self.part(mesh, primitive.material).map_err(|fault| fault.within(place))?);
+            parts.push(Part { mesh, look });
         }
         self.parts.insert(key, parts.clone());
         Ok(parts)
-    }
-
-    fn part(&self, mesh: u32, material: Option<Index<Material>>) -> Outcome<Part> {
-        let mut part = Part { mesh, colour: [1.0; 4], translucent: false, masked: false };
-        let Some(index) = material else { return Ok(part) };
-        let material = element(&self.document.root, index, "material")?;
-        part.colour = material.pbr_metallic_roughness.base_color_factor.0.map(|channel| channel.clamp(0.0, 1.0));
-        match material.alpha_mode {
-            Checked::Valid(AlphaMode::Opaque) => {}
-            Checked::Valid(AlphaMode::Blend) => part.translucent = true,
-            Checked::Valid(AlphaMode::Mask) => part.masked = true,
-            Checked::Invalid => {
-                let other = self.document.said(&format!("/materials/{index}/alphaMode"));
-                let material = label("material", index.value(), material.name.as_deref());
-                return broken(format!("{material}: its alphaMode '{other}' is none of OPAQUE, MASK and BLEND"));
-            }
-        }
-        Ok(part)
     }
 
     /// Node from object of each instance (EXT_mesh_gpu_instancing).

@@ -6,6 +6,7 @@ use gltf::binary::{Glb, Header};
 use serde_json::{json, Value};
 
 const FLOAT: u32 = 5126;
+const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_INT: u32 = 5125;
 
 /// Data and what describes it. Every element is 4 bytes wide, so all is aligned.
@@ -50,6 +51,25 @@ impl Binary {
         let start = self.bytes.len();
         self.bytes.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
         self.accessor(start, 1, UNSIGNED_INT, "SCALAR")
+    }
+
+    /// Colours of 8 bits a channel; returns the accessor.
+    pub(super) fn colours(&mut self, colours: &[[u8; 4]]) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(colours.as_flattened());
+        // An element is as wide as a float.
+        let accessor = self.accessor(start, 1, UNSIGNED_BYTE, "VEC4");
+        self.accessors[accessor]["normalized"] = true.into();
+        accessor
+    }
+
+    /// A file within the file; returns the view.
+    pub(super) fn file(&mut self, bytes: &[u8]) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(bytes);
+        self.views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": bytes.len() }));
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.views.len() - 1
     }
 
     fn accessor(&mut self, start: usize, size: usize, component: u32, kind: &str) -> usize {

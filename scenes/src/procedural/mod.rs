@@ -7,6 +7,7 @@ mod city_block;
 mod detail;
 mod factory;
 mod fantasy;
+mod forest;
 mod furniture;
 mod lane;
 mod monsters;
@@ -22,7 +23,7 @@ mod terrain;
 mod yeahrights;
 
 use crate::camera::{Camera, Pose, Projection};
-use crate::model::{Mesh, Object, Scene, Walk};
+use crate::model::{Mesh, Object, Scene, Surface, Walk};
 use detail::Detail;
 use glam::{DAffine3, DMat3, DVec3};
 use parts::Parts;
@@ -135,6 +136,13 @@ pub const SCENES: &[Entry] = &[
         make: satellite::make,
     },
     Entry {
+        name: "forest",
+        alias: "",
+        about: "trees, bushes and ferns of masked leaves, crystals of glass: 12,000 objects",
+        by_detail: false,
+        make: forest::make,
+    },
+    Entry {
         name: "rooms",
         alias: "",
         about: "furnished rooms with doorways along corridors: 4,000 objects",
@@ -200,6 +208,7 @@ impl Assembly {
             dynamic: false,
             translucent: false,
             masked: false,
+            surface: Surface::default(),
         });
     }
 

@@ -31,7 +31,8 @@ impl Parts {
     /// The finished mesh.
     pub(super) fn mesh(self, name: &str) -> Mesh {
         let Parts { positions, normals, indices, .. } = self;
-        Mesh { name: name.into(), topology: Topology::Triangles, positions, normals, indices, declared_bounds: None }
+        let topology = Topology::Triangles;
+        Mesh { name: name.into(), topology, positions, normals, indices, ..Mesh::default() }
     }
 
     /// A flat face with its corners counter-clockwise from outside; three corners or more, convex.

@@ -3,6 +3,7 @@
 mod accessors;
 mod crate_limits;
 mod files;
+mod materials;
 mod model;
 mod models;
 mod modes;

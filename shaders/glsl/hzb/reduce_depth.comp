@@ -2,19 +2,21 @@
 // 2015; depth is reversed, so the farthest is the smallest). Twin: culling/src/hzb/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #include "grid.glsl"
 #include "types.glsl"
 #include "depth.glsl"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 0) uniform texture2D depth;
+// Gathered: on a CPU device a texture read is a call, and so four depths cost one.
+layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1, scalar) readonly buffer Levels { PyramidLevel items[]; } levels;
 layout(set = 0, binding = 2, scalar) writeonly buffer Pyramid { float items[]; } pyramid;
 layout(push_constant, scalar) uniform Push { uvec2 size_px; uvec2 tiles; } push;
 
-float source_depth(uvec2 texel) {
-    return reversed(texelFetch(depth, ivec2(min(texel, push.size_px - 1u)), 0).r);
+// The corner that four pixels share is half a pixel from where others would be gathered: more than coordinates are rounded by.
+vec4 source_depths(uvec2 first) {
+    vec4 kept = textureGather(depth, vec2(first + 1u) / vec2(push.size_px));
+    return vec4(reversed(kept.x), reversed(kept.y), reversed(kept.z), reversed(kept.w));
 }
 
 #include "reduce.glsl"

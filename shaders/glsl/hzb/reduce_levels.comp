@@ -15,6 +15,10 @@ float source_depth(uvec2 texel) {
     return pyramid.items[source.first + inside.y * source.width + inside.x];
 }
 
+vec4 source_depths(uvec2 first) {
+    return vec4(source_depth(first), source_depth(first + uvec2(1u, 0u)), source_depth(first + uvec2(0u, 1u)), source_depth(first + uvec2(1u, 1u)));
+}
+
 #include "reduce.glsl"
 
 void main() {

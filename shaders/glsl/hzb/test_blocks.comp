@@ -1,6 +1,6 @@
 // hzb/test_blocks: which blocks may have objects that are due in this step, and do not lie wholly behind what was drawn? In step k
-// are due what the last frame saw of range k and what it did not see of range k - 1. A block once hidden stays so for the rest of
-// the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs
+// are due what the last frame saw of range k and what it did not see of range k - 1: in step 0 the former alone. A block once hidden stays
+// so for the rest of the frame, as depth only comes nearer. (hzb-iterative; Haar & Aaltonen 2015 test clusters so.) Twin: culling/src/hzb/iterative/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
@@ -20,8 +20,17 @@ layout(set = 0, binding = 4, scalar) readonly buffer Levels { PyramidLevel items
 layout(set = 0, binding = 5, scalar) readonly buffer Pyramid { float items[]; } pyramid;
 // By block: 1 if it is due.
 layout(set = 0, binding = 6, scalar) writeonly buffer Due { uint items[]; } due;
+// What the last frame saw, by object.
+layout(set = 0, binding = 7, scalar) readonly buffer Seen { uint items[]; } seen;
 layout(push_constant, scalar) uniform Push { uint step; } push;
 #include "hidden.glsl"
+
+bool was_seen(uint block, uint object_count) {
+    uint object = block * BLOCK_OBJECTS;
+    uint end = min(object + BLOCK_OBJECTS, object_count);
+    while (object < end && seen.items[object] == 0u) object++;
+    return object < end;
+}
 
 void main() {
     uint block = invocation_index();
@@ -32,6 +41,7 @@ void main() {
     float outermost = uintBitsToFloat(reach.items[0]) - nearest;
     bool is_due = span.begin <= span.end && push.step >= range_of(span.begin - nearest, outermost, all.range_count, all.share)
         && push.step <= range_of(span.end - nearest, outermost, all.range_count, all.share) + 1u;
+    if (push.step == 0u) is_due = is_due && was_seen(block, is_due ? all.object_count : 0u);
     if (BEHIND && is_due && !is_visible(bounds.items[block], all.view, all.coarsest_level)) {
         is_due = false;
         spans.items[block] = BlockSpan(1.0, 0.0);

@@ -5,7 +5,7 @@
 #include "footprint.glsl"
 #include "box.glsl"
 #include "pyramid.glsl"
-#include "steps.glsl"
+#include "kinds.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;

@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
-#include "steps.glsl"
+#include "kinds.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer Blocks { uint words[]; } blocks;
@@ -27,13 +27,11 @@ void main() {
     StepView all = views.items[0];
     uint next[MOST_KINDS];
     uint left = 0u;
-    for (uint kind = 0u; kind < MOST_KINDS; kind++) {
-        bool is_used = kind == 0u || (kind == 1u ? all.second_kind : all.third_kind) < all.object_count;
-        next[kind] = is_used ? starts.items[kind * all.block_count + place] : 0u;
-        left += is_used ? counts.items[kind * all.block_count + place] : 0u;
+    for (uint kind = 0u; kind < KIND_COUNT; kind++) {
+        next[kind] = starts.items[kind * all.block_count + place];
+        if (kind > 0u) next[kind] += all.later_kinds[kind - 1u];
+        left += counts.items[kind * all.block_count + place];
     }
-    next[1] += all.second_kind;
-    next[2] += all.third_kind;
     uint first = blocks.words[LISTED_HEADER + place] * BLOCK_OBJECTS;
     for (uint object = first; left != 0u; object++) {
         uint becomes = shown.items[object];

@@ -1,6 +1,6 @@
 // One reduction step, shared by hzb/reduce_depth and hzb/reduce_levels: each invocation turns one 8x8 tile of the source
 // into 4x4, 2x2 and 1 farthest depths. No shared memory and no barrier: on a CPU device those cost five times the work.
-// The including stage declares `pyramid`, `levels` and float source_depth(uvec2 texel), which clamps at the border.
+// The including stage declares `pyramid`, `levels` and vec4 source_depths(uvec2 texel), of two by two from there on, clamped at the border.
 #ifndef REDUCE_GLSL
 #define REDUCE_GLSL
 #include "pyramid.glsl"
@@ -13,9 +13,8 @@ void store(uint level, uvec2 texel, float farthest) {
 }
 
 float reduce_cell(uint level, uvec2 texel) {
-    uvec2 source = texel * 2u;
-    float farthest = min(min(source_depth(source), source_depth(source + uvec2(1u, 0u))),
-        min(source_depth(source + uvec2(0u, 1u)), source_depth(source + uvec2(1u, 1u))));
+    vec4 depths = source_depths(texel * 2u);
+    float farthest = min(min(depths.x, depths.y), min(depths.z, depths.w));
     store(level, texel, farthest);
     return farthest;
 }

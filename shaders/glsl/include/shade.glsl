@@ -1,11 +1,20 @@
 // The vertex work of every draw/objects* stage: the same arithmetic, so that all give the same pixels.
-// PASS_ITEM tells the fragment shader whose it is.
+// PASS_ITEM tells the fragment shader whose it is, DETAIL what it is made of.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "instance.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 normal_snorm16;    // octahedral
+
+#ifdef DETAIL
+layout(location = 8) in vec2 coordinates;       // on the texture
+layout(location = 9) in uint tint;              // RGBA8, linear: what the colour is multiplied by
+// By object.
+layout(set = 0, binding = 0, scalar) readonly buffer ObjectMaterials { uint items[]; } object_materials;
+layout(location = 2) out vec2 texture_at;
+layout(location = 3) flat out uint material;
+#endif
 
 layout(push_constant, scalar) uniform Push { View view; } push;
 
@@ -36,6 +45,11 @@ void main() {
     float lambert = size > 0.0 ? abs(dot(normal, vec3(0.40, 0.82, 0.41))) / size : 1.0;
     vec4 colour = unpackUnorm4x8(object.colour);
     shade = vec4(colour.rgb * (0.25 + 0.75 * lambert), colour.a);
+#ifdef DETAIL
+    shade *= unpackUnorm4x8(tint);
+    texture_at = coordinates;
+    material = object_materials.items[gl_InstanceIndex];
+#endif
 #ifdef PASS_ITEM
     item = uint(gl_InstanceIndex);
 #endif

@@ -7,8 +7,9 @@
 
 // At most so many depth ranges; there is one step more.
 const uint MOST_STEP_RANGES = 5u;
-// At most so many kinds of primitive, each of which has a draw of its own.
-const uint MOST_KINDS = 3u;
+// At most so many kinds of draw, by primitive, surface and sides: each has a draw of its own.
+const uint MOST_KINDS = 8u;
+const uint LATER_KINDS = MOST_KINDS - 1u;
 
 // A list of blocks, then: its first words are a grid of a work group a block, and their number; then a grid of an invocation a block.
 const uint LISTED_GRID = 4u;
@@ -29,8 +30,7 @@ struct StepView {
     uint coarsest_level;    // of the pyramid
     uint range_count;       // 1 to MOST_STEP_RANGES
     float share;            // where a range ends, as a share of where the next one does
-    uint second_kind;       // the first object of the second kind of primitive, and of the third; beyond all objects if there is none
-    uint third_kind;
+    uint later_kinds[LATER_KINDS];  // the first object of the second kind, the third and so on; beyond all objects if there is none
 };
 
 // Where the nearest block in view begins, from its inverted bits: ranges are counted from there, as what a view from above sees, say,
@@ -43,8 +43,4 @@ float nearest_begin(uint inverted) {
 const uint STEP_HIDDEN = 0u;    // not due, or not seen: nothing
 const uint STEP_SHOWN = 1u;     // drawn
 const uint STEP_TESTED = 2u;    // drawn if its box, rasterised, shows
-
-uint kind_of(uint object, StepView all) {
-    return object >= all.third_kind ? 2u : object >= all.second_kind ? 1u : 0u;
-}
 #endif

@@ -41,6 +41,23 @@ struct Bounds {
     uint flags;         // OBJECT_*
 };
 
+// What lies beyond a texture's borders.
+const uint WRAP_REPEAT = 0u;
+const uint WRAP_MIRROR = 1u;
+const uint WRAP_CLAMP = 2u;
+// Bits of Material.wrap for x; those for y follow.
+const uint WRAP_BITS = 2u;
+
+// Where a base colour texture lies among the texels, and where what it covers is not there.
+struct Material {
+    uint first_texel;   // of level 0; each level follows the one before, with half of its texels a side
+    uint width;
+    uint height;
+    uint levels;        // 0: no texture
+    uint wrap;          // WRAP_*, x in the lowest bits
+    float cutoff;
+};
+
 // Where a mesh lies in the shared index and vertex buffers.
 struct MeshRange {
     uint first_index;

@@ -150,12 +150,12 @@ fn read_binding(
             Operand::LiteralBit32(2) => (BindingKind::StorageImage, None),
             _ => (BindingKind::SampledImage, None),
         },
+        (StorageClass::UniformConstant, Op::TypeSampledImage) => (BindingKind::GatheredImage, None),
         _ => {
             return Err(format!(
-                "`{name}` is a {}: a binding is a storage buffer, a texture without sampler or a storage image",
+                "`{name}` is a {}: a binding is a storage buffer, a texture or a storage image",
                 match (class, ty.class.opcode) {
                     (StorageClass::Uniform, _) => "uniform buffer",
-                    (_, Op::TypeSampledImage) => "texture with sampler",
                     (_, Op::TypeSampler) => "sampler",
                     (_, Op::TypeArray | Op::TypeRuntimeArray) => "array of resources",
                     _ => "resource that the contract does not know",
@@ -164,7 +164,7 @@ fn read_binding(
         }
     };
     let access = match kind {
-        BindingKind::SampledImage => Access::Read,
+        BindingKind::SampledImage | BindingKind::GatheredImage => Access::Read,
         _ => read_access(words, id, ty).map_err(|error| format!("`{name}`: {error}"))?,
     };
     Ok(Binding { name, binding, kind, access, element })

@@ -2,8 +2,8 @@
 
 use culling::{View, World};
 use engine::{
-    Buffer, Error, Extra, Format, Frame, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives, Target,
-    TimerMode,
+    Buffer, Error, Extra, Faces, Format, Frame, Gpu, GpuOptions, Image, IndexedIndirect, Placement, Primitives,
+    Surface, Target, TimerMode,
 };
 use harness::worlds::{cube, dust, shot, sized, square, wires, Maker};
 use harness::{gpu, options, worlds, Lab, Random, Subject};
@@ -133,6 +133,8 @@ fn heavy_and_light(gpu: &Gpu) -> engine::FrameReport {
         count: None,
         max_draws: 1,
         primitives: Primitives::Triangles,
+        faces: Faces::Both,
+        surface: Surface::Opaque,
     };
     let light = words(gpu, &[1; 64]);
     let run = || {

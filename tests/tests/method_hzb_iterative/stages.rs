@@ -47,8 +47,7 @@ impl Input {
             coarsest_level,
             range_count: 3,
             share: 0.5,
-            second_kind: 2_000,
-            third_kind: 3_001,
+            later_kinds: [2_000, 3_001, u32::MAX, u32::MAX, u32::MAX, u32::MAX, u32::MAX],
         };
         Input {
             texels: pyramid(&occludees.depth, SIZE, &levels),
@@ -85,9 +84,13 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
     let (mut all_blocks, mut differ, mut due_blocks) = (0, 0, 0);
     for (name, projection) in special_projections() {
         let input = Input::by_chance(&mut random, &gpu, projection);
-        let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[input.all]));
+        let views = StepView { object_count: (BOXES * BLOCK_OBJECTS as usize) as u32, ..input.all };
+        let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[views]));
         let (levels, texels) = (stored(&gpu, &input.levels), stored(&gpu, &input.texels));
         let (spans, reach) = (stored(&gpu, &vec![BlockSpan::default(); BOXES]), stored(&gpu, &[0u32; 2]));
+        // Some three quarters of the blocks have an object that was seen.
+        let seen: Vec<u32> = (0..BOXES * BLOCK_OBJECTS as usize).map(|_| u32::from(random.below(50) == 0)).collect();
+        let seen_gpu = stored(&gpu, &seen);
         let mut f = gpu.frame();
         let measure =
             hzb::MeasureBlocks { bounds: bounds.all(), spans: spans.all(), reach: reach.all(), views: views.all() };
@@ -116,6 +119,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
                 views: views.all(),
                 levels: levels.all(),
                 pyramid: texels.all(),
+                seen: seen_gpu.all(),
                 due: due.all(),
                 step,
                 constants: hzb::TestBlocksConstants { footprint_texels: 4, behind, finest_level: input.finest },
@@ -123,7 +127,8 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
             f.dispatch(test, BOXES as u32);
             f.finish().unwrap();
             let pyramid = behind.then(|| input.test());
-            let twin_due = twin::test_blocks(&input.bounds, &mut measured, found, &input.all, pyramid.as_ref(), step);
+            let twin_due =
+                twin::test_blocks((&input.bounds, &seen), &mut measured, found, &input.all, pyramid.as_ref(), step);
             let found = due.read().unwrap();
             differ += found.iter().zip(&twin_due).filter(|(a, b)| a != b).count();
             due_blocks += found.iter().sum::<u32>() as usize;
@@ -287,7 +292,13 @@ fn run(
         shown: shown.all(),
         counts: counts.all(),
         step,
-        constants: hzb::TestObjectsConstants { footprint_texels: 4, behind, boxes: true, finest_level: input.finest },
+        constants: hzb::TestObjectsConstants {
+            footprint_texels: 4,
+            behind,
+            boxes: true,
+            kind_count: 3,
+            finest_level: input.finest,
+        },
     };
     f.dispatch_indirect(test, list.all());
     let scan = hzb::ScanBlocks {
@@ -315,6 +326,7 @@ fn run(
         commands: commands.all(),
         visible: visible.all(),
         small_indices: SMALL,
+        constants: hzb::WriteBlocksConstants { kind_count: 3 },
     };
     f.dispatch_indirect(write, list.all().from(LISTED_GRID as usize));
     f.finish().unwrap();

@@ -283,11 +283,11 @@ fn occludees_and_filtered_occluders_equal_their_twins() {
         let mut lab = harness::Lab::new(&gpu, &case);
         let truth = lab.truth(&case.shots[0]);
         let occluders = zeros(&gpu, lab.world.len());
-        let strips = size[1].div_ceil(FILTER_STRIP);
+        let strips = [size[0].div_ceil(2), size[1].div_ceil(FILTER_STRIP)];
         let owners = lab.targets.with_items().item.unwrap();
         let mut f = gpu.frame();
         let stage = eovc::FilterOccluders { owners, occluders: occluders.all(), size_px: size, strips };
-        f.dispatch(stage, strips * size[0]);
+        f.dispatch(stage, strips[0] * strips[1]);
         f.finish().unwrap();
         let twin = eovc_twin::filter_occluders(&truth.images().items, lab.world.len());
         assert_eq!(occluders.read().unwrap(), twin, "{size:?}");

@@ -26,7 +26,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
-use culling::{OptionInfo, METHODS};
+use culling::{OptionInfo, Shading, METHODS};
 use scenes::SceneOptions;
 use std::path::{Path, PathBuf};
 
@@ -129,6 +129,9 @@ pub struct SceneChoice {
     /// Picture size in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     pub size: [u32; 2],
+    /// What is drawn of materials: lambert (one colour an object) or textured; if left out, what the scene has
+    #[arg(long, value_name = "lambert|textured", value_parser = parse_shading)]
+    pub shading: Option<Shading>,
 }
 
 /// Which methods.
@@ -360,6 +363,7 @@ impl SceneChoice {
             whole_path: self.whole_path,
             frames: self.frames as usize,
             size: self.size,
+            shading: self.shading,
         }
     }
 }
@@ -373,6 +377,14 @@ fn table_names() -> PossibleValuesParser {
     PossibleValuesParser::new(
         TABLES.iter().map(|table| PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))),
     )
+}
+
+fn parse_shading(text: &str) -> std::result::Result<Shading, String> {
+    match text {
+        "lambert" => Ok(Shading::Lambert),
+        "textured" => Ok(Shading::Textured),
+        _ => Err("it is lambert or textured".to_owned()),
+    }
 }
 
 fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {

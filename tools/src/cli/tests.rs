@@ -79,6 +79,18 @@ fn a_level_of_detail_reaches_the_session() {
 }
 
 #[test]
+fn a_shading_reaches_the_session() {
+    let shading = |line: &str| match Cli::parse_from(line.split(' ')).command {
+        Command::Shot(arguments) => arguments.scene.session().unwrap().shading,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(shading("sightline shot"), None, "what the scene has");
+    assert_eq!(shading("sightline shot --shading lambert"), Some(Shading::Lambert));
+    assert_eq!(shading("sightline shot --shading textured"), Some(Shading::Textured));
+    assert!(Cli::try_parse_from("sightline shot --shading flat".split(' ')).is_err());
+}
+
+#[test]
 fn auto_is_the_default_choice_and_a_warm_up_the_tables() {
     let bench = |line: &str| match Cli::parse_from(line.split(' ')).command {
         Command::Bench(arguments) => arguments,

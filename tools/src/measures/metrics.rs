@@ -1,6 +1,6 @@
 //! How far a method's frame is from the truth: its visible set and its picture against those of `none`, which draws
 //! everything. Words as in the papers: the *visible set* (REF) is the objects that own at least one pixel of the item
-//! buffer; a *false negative* is in REF but not drawn, a *false positive* drawn but not in REF; a *tie* is a pixel of
+//! buffer, and the translucent ones that leave a fragment in front of it; a *false negative* is in REF but not drawn, a *false positive* drawn but not in REF; a *tie* is a pixel of
 //! equal depth won by another object, counted apart and never an error.
 //!
 //! Everything here is arithmetic on read-back images: no GPU, so that the harness itself can be tested with planted
@@ -15,6 +15,8 @@ mod tests;
 pub use aggregate::MethodErrors;
 pub use depth::{DepthErrors, NOTICED};
 pub(crate) use picture::{class_of, PixelClass};
+
+use std::borrow::Cow;
 
 /// The item buffer's value where no object was drawn.
 pub const NO_ITEM: u32 = u32::MAX;
@@ -32,6 +34,18 @@ pub struct FrameImages {
     pub depth: Vec<f32>,
     /// The index of the object that owns the pixel, or [`NO_ITEM`].
     pub items: Vec<u32>,
+    /// Translucent objects that leave a fragment in front of all that hides: visible, though they own no pixel. Of the truth alone.
+    pub seen_through: Vec<u32>,
+}
+
+impl FrameImages {
+    /// Every visible object, most of them many times: who owns each pixel, and what is seen through.
+    pub fn visible_items(&self) -> Cow<'_, [u32]> {
+        match self.seen_through.is_empty() {
+            true => Cow::Borrowed(&self.items),
+            false => Cow::Owned([&self.items[..], &self.seen_through].concat()),
+        }
+    }
 }
 
 /// Why two frames cannot be compared. Each is a defect of the harness or of a shader, not an error of culling.
@@ -115,7 +129,7 @@ impl Truth {
     pub fn new(images: FrameImages, object_count: usize) -> Result<Self, MetricError> {
         check_images(&images, object_count, "truth")?;
         let mut visible = vec![0u64; object_count.div_ceil(64)];
-        for &item in images.items.iter().filter(|&&item| item != NO_ITEM) {
+        for &item in images.visible_items().iter().filter(|&&item| item != NO_ITEM) {
             visible[item as usize / 64] |= 1 << (item % 64);
         }
         let visible_count = visible.iter().map(|word| word.count_ones() as usize).sum();
@@ -265,7 +279,7 @@ fn check_images(images: &FrameImages, objects: usize, frame: &'static str) -> Re
         return Err(MetricError::NanDepth { frame, x, y });
     }
     let unknown = |&&item: &&u32| item != NO_ITEM && item as usize >= objects;
-    match images.items.iter().find(unknown) {
+    match images.items.iter().chain(&images.seen_through).find(unknown) {
         Some(&item) => Err(MetricError::UnknownItem { frame, item, objects }),
         None => Ok(()),
     }

@@ -216,6 +216,7 @@ mod tests {
             colour: vec![[100, 40, 8, 255]; count],
             depth,
             items: vec![0; count],
+            seen_through: vec![],
         }
     }
 

@@ -88,6 +88,8 @@ const WORK: &[Measure] = &[
     measure("draws", "draw commands a frame", |_, m| Some(m.draws_mean)),
     measure("overdraw", "fragments shaded for each pixel that shows something", |_, m| m.overdraw_mean),
     measure("queries", "occlusion queries a frame", |_, m| Some(m.queries_mean)),
+    measure("state changes", "changes between drawing and testing a frame", |_, m| Some(m.state_changes_mean)),
+    measure("waits", "times a frame that the host waited for answers", |_, m| Some(m.waits_mean)),
     measure("rays", "rays cast a frame", |_, m| Some(m.rays_mean)),
     measure("boxes", "boxes rasterised a frame to test what is in them", |_, m| Some(m.boxes_mean)),
     measure("node visits", "tree nodes that rays looked at a frame", |_, m| Some(m.node_visits_mean)),

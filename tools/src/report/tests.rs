@@ -41,6 +41,7 @@ fn one_pixel() -> crate::measures::metrics::FrameImages {
         colour: vec![[9; 4]],
         depth: vec![0.5],
         items: vec![0],
+        seen_through: vec![],
     }
 }
 

@@ -85,6 +85,8 @@ impl Method {
             ("draws_mean", Some(self.draws_mean)),
             ("overdraw_mean", self.overdraw_mean),
             ("queries_mean", Some(self.queries_mean)),
+            ("state_changes_mean", Some(self.state_changes_mean)),
+            ("waits_mean", Some(self.waits_mean)),
             ("rays_mean", Some(self.rays_mean)),
             ("boxes_mean", Some(self.boxes_mean)),
             ("node_visits_mean", Some(self.node_visits_mean)),

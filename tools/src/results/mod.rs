@@ -149,6 +149,12 @@ pub struct Method {
     pub overdraw_mean: Option<f64>,
     /// Occlusion queries issued.
     pub queries_mean: f64,
+    /// Changes between drawing and testing.
+    #[serde(default)]
+    pub state_changes_mean: f64,
+    /// Times that the host waited for answers.
+    #[serde(default)]
+    pub waits_mean: f64,
     /// Rays cast.
     pub rays_mean: f64,
     /// Boxes rasterised to test what is in them.

@@ -116,6 +116,8 @@ const SCALARS: &[(&str, Cell)] = &[
     ("draws_mean", |_, m| measured(m, m.draws_mean)),
     ("overdraw_mean", |_, m| optional(m.overdraw_mean)),
     ("queries_mean", |_, m| measured(m, m.queries_mean)),
+    ("state_changes_mean", |_, m| measured(m, m.state_changes_mean)),
+    ("waits_mean", |_, m| measured(m, m.waits_mean)),
     ("rays_mean", |_, m| measured(m, m.rays_mean)),
     ("boxes_mean", |_, m| measured(m, m.boxes_mean)),
     ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),

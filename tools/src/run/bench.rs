@@ -254,6 +254,8 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         draws_mean: mean(&records.draws),
         overdraw_mean: stats::mean(&records.overdraw),
         queries_mean: mean(&records.counted(|work| work.queries)),
+        state_changes_mean: mean(&records.counted(|work| work.state_changes)),
+        waits_mean: mean(&records.counted(|work| work.waits)),
         rays_mean: mean(&records.counted(|work| work.rays)),
         boxes_mean: mean(&records.counted(|work| work.boxes)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),
@@ -325,7 +327,7 @@ pub fn header(session: &Session, command: &str) -> Results {
         },
         scene: results::Scene {
             name: session.scene.name.clone(),
-            objects: session.world.len() as u64,
+            objects: session.world.total() as u64,
             triangles: session.world.triangles(),
             hash: session.scene_hash(),
         },

@@ -67,7 +67,8 @@ impl Contender {
     ) -> Result<Self> {
         let before = session.gpu.memory_mib();
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
-        let method = (entry.make)(&setup).with_context(|| format!("method '{}'", options.label()))?;
+        let made = (entry.make)(&setup).and_then(|method| culling::translucent::after(method, &setup));
+        let method = made.with_context(|| format!("method '{}'", options.label()))?;
         let memory_mib = session.gpu.memory_mib() - before;
         Ok(Contender { entry, options, method, memory_mib, depth: session.gpu.depth() })
     }

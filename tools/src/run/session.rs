@@ -2,7 +2,7 @@
 
 use crate::run::targets::Targets;
 use anyhow::{bail, Context, Result};
-use culling::{View, World};
+use culling::{Shading, View, World};
 use engine::{Gpu, GpuOptions};
 use scenes::{CameraPath, Scene, SceneOptions, Shot};
 use std::path::{Path, PathBuf};
@@ -28,6 +28,8 @@ pub struct SessionOptions {
     pub frames: usize,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// What is drawn of materials; none takes what the scene has.
+    pub shading: Option<Shading>,
 }
 
 impl Default for SessionOptions {
@@ -42,6 +44,7 @@ impl Default for SessionOptions {
             whole_path: false,
             frames: 30,
             size: [1280, 720],
+            shading: None,
         }
     }
 }
@@ -84,7 +87,8 @@ impl Session {
         };
         let path = if options.whole_path { path.whole() } else { path };
         let targets = Targets::new(gpu, options.size)?;
-        let world = World::new(gpu, &scene).with_context(|| format!("scene '{}'", scene.name))?;
+        let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
+        let world = World::shaded(gpu, &scene, shading).with_context(|| format!("scene '{}'", scene.name))?;
         Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })
     }
 
@@ -129,6 +133,11 @@ impl Session {
         self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
+    /// What is drawn of materials.
+    pub fn shading(&self) -> Shading {
+        self.options.shading.unwrap_or_else(|| Shading::of(&self.scene))
+    }
+
     /// Says in full what pictures of this run depend on: the key of its visible sets.
     pub fn key(&self) -> String {
         let hash = self.scene_hash();
@@ -141,9 +150,10 @@ impl Session {
             .map(|module| format!("{:x}", module.spirv.len()))
             .collect();
         format!(
-            "scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders}",
+            "scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders} shading={:?}",
             self.path.describe(),
-            self.options.frames
+            self.options.frames,
+            self.shading()
         )
     }
 }

@@ -70,6 +70,7 @@ impl Targets {
             colour: bytemuck::pod_collect_to_vec(&self.colour.read()?),
             depth: bytemuck::pod_collect_to_vec(&self.depth.read()?),
             items: self.read_items()?,
+            seen_through: Vec::new(),
         })
     }
 

@@ -2,8 +2,11 @@
 
 use crate::measures::metrics::{FrameImages, Truth};
 use crate::run::session::Session;
+use crate::run::targets::Targets;
 use anyhow::{Context, Result};
-use culling::{View, VisibleSets};
+use culling::translucent::Seen;
+use culling::{View, VisibleSets, World};
+use engine::Gpu;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,25 +28,35 @@ pub fn draw_everything(session: &mut Session, frame: usize) -> Result<FrameImage
 
 /// The same through a view, of objects where they are now.
 pub fn draw_all_of(session: &Session, view: &View) -> Result<FrameImages> {
-    let target = session.targets.with_items();
-    let mut f = session.gpu.frame();
-    session.world.update(&mut f);
+    draw_truth(&session.gpu, &session.world, &session.targets, view)
+}
+
+/// The same of a world that belongs to no session. Translucent objects are drawn last; of them it is noted who leaves a fragment.
+pub fn draw_truth(gpu: &Gpu, world: &World, targets: &Targets, view: &View) -> Result<FrameImages> {
+    let target = targets.with_items();
+    let mut seen = Seen::new(gpu, world)?;
+    let mut f = gpu.frame();
+    world.update(&mut f);
     f.clear(&target);
-    session.world.draw_all(&mut f, view, &target);
+    world.draw_all(&mut f, view, &target);
+    if let Some(seen) = &mut seen {
+        seen.frame(&mut f, world, view, &target)?;
+    }
     f.finish()?;
-    Ok(session.targets.read()?)
+    let seen_through = seen.map_or(Ok(Vec::new()), |seen| seen.objects())?;
+    Ok(FrameImages { seen_through, ..targets.read()? })
 }
 
 impl RunTruth {
     /// Draws the truth of every frame. `step` is called after each.
     pub fn draw(session: &mut Session, mut step: impl FnMut()) -> Result<Self> {
-        let mut sets = VisibleSets::new(session.world.len());
+        let mut sets = VisibleSets::new(session.world.total());
         let mut images = Vec::new();
         let [width, height] = session.options().size;
         let keep = session.frames() * width as usize * height as usize * 12 <= KEPT_BYTES;
         for frame in 0..session.frames() {
             let drawn = draw_everything(session, frame)?;
-            sets.push_items(&drawn.items);
+            sets.push_items(&drawn.visible_items());
             if keep {
                 images.push(drawn);
             }
@@ -55,7 +68,7 @@ impl RunTruth {
     /// The visible sets of a run from the cache, or drawn and then cached. A cache that cannot be written is no error.
     pub fn visible_sets(session: &mut Session, cache: Option<&Path>, step: impl FnMut()) -> Result<Arc<VisibleSets>> {
         let key = session.key();
-        let (objects, frames) = (session.world.len(), session.frames());
+        let (objects, frames) = (session.world.total(), session.frames());
         if let Some(sets) = cache.and_then(|folder| culling::reference::load(folder, &key, objects, frames)) {
             return Ok(Arc::new(sets));
         }
@@ -79,6 +92,6 @@ impl RunTruth {
             Some(images) => images.clone(),
             None => draw_everything(session, frame)?,
         };
-        Ok(Truth::new(images, session.world.len())?)
+        Ok(Truth::new(images, session.world.total())?)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::run::targets::Targets;
+use crate::run::truth::draw_truth;
 use crate::stress::Case;
 use anyhow::{Context, Result};
 use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, World};
@@ -94,19 +95,13 @@ impl Lab {
     /// The truth of a shot: everything is drawn.
     pub fn truth(&mut self, shot: &Shot) -> Result<Truth> {
         let view = self.look(shot, 0)?;
-        let target = self.targets.with_items();
-        let mut f = self.gpu.frame();
-        self.world.update(&mut f);
-        f.clear(&target);
-        self.world.draw_all(&mut f, &view, &target);
-        f.finish()?;
-        Ok(Truth::new(self.targets.read()?, self.world.len())?)
+        Ok(Truth::new(draw_truth(&self.gpu, &self.world, &self.targets, &view)?, self.world.total())?)
     }
 
     /// The truth of each shot, and their visible sets.
     pub fn truths(&mut self, shots: &[Shot]) -> Result<(Vec<Truth>, Arc<VisibleSets>)> {
         let truths = shots.iter().map(|shot| self.truth(shot)).collect::<Result<Vec<Truth>>>()?;
-        let mut sets = VisibleSets::new(self.world.len());
+        let mut sets = VisibleSets::new(self.world.total());
         truths.iter().for_each(|truth| sets.push_items(&truth.images().items));
         Ok((truths, Arc::new(sets)))
     }
@@ -115,7 +110,8 @@ impl Lab {
     pub fn make(&self, subject: &Subject, visible: &Arc<VisibleSets>) -> Result<Box<dyn Method>> {
         let visible = Some(visible.clone());
         let setup = Setup { gpu: &self.gpu, world: &self.world, options: &subject.options, visible };
-        (subject.make)(&setup).with_context(|| subject.options.label())
+        let made = (subject.make)(&setup).and_then(|method| culling::translucent::after(method, &setup));
+        made.with_context(|| subject.options.label())
     }
 
     /// Runs one frame with the item buffer on.

@@ -143,12 +143,12 @@ fn one_drill(gpu: &Gpu, plan: &Plan, id: DrillId, outcome: &mut Outcome) -> Resu
 
 /// The truth of each frame, and the visible sets.
 pub(super) fn truths(lab: &mut Lab, drill: &Drill) -> Result<(Vec<Truth>, Arc<VisibleSets>)> {
-    let mut sets = VisibleSets::new(lab.world.len());
+    let mut sets = VisibleSets::new(lab.world.total());
     let mut truths = Vec::new();
     for (frame, shot) in drill.case.shots.iter().enumerate() {
         fit(lab, drill.size(frame))?;
         let truth = lab.truth(shot)?;
-        sets.push_items(&truth.images().items);
+        sets.push_items(&truth.images().visible_items());
         truths.push(truth);
     }
     Ok((truths, Arc::new(sets)))

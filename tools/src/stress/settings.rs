@@ -2,6 +2,7 @@
 
 use super::{Random, Subject};
 use culling::auto::ALLOW_ERROR_OPTION;
+use culling::queries::MIN_PIXELS_OPTION;
 use culling::world::DETAIL_OPTION;
 use culling::OptionInfo;
 
@@ -19,7 +20,7 @@ pub fn by_chance(subject: &Subject, random: &mut Random) -> Subject {
 
 /// Whoever leaves out details, or allows errors, asks for errors.
 fn asks_for_errors(option: &OptionInfo) -> bool {
-    [DETAIL_OPTION, ALLOW_ERROR_OPTION].contains(option)
+    [DETAIL_OPTION, MIN_PIXELS_OPTION, ALLOW_ERROR_OPTION].contains(option)
 }
 
 /// Values worth trying, at least one.

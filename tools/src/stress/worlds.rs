@@ -1,6 +1,7 @@
 //! Small worlds, each hard in one way, with a camera that stands still, moves, turns and jumps.
 
 pub mod chance;
+pub mod materials;
 pub mod special;
 
 pub use chance::chance;
@@ -8,7 +9,7 @@ pub use special::{oblique, special, special_projections};
 
 use crate::stress::Random;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use scenes::{Mesh, Object, Pose, Projection, Scene, Shot, Topology};
+use scenes::{Mesh, Object, Pose, Projection, Scene, Shot, Surface, Topology};
 
 /// A scene, what the camera does in it, and the picture's size.
 #[derive(Clone, Debug)]
@@ -56,15 +57,23 @@ impl Maker {
             .as_mut()
             .map_or([1.0; 4], |random| [random.unit() as f32, random.unit() as f32, random.unit() as f32, 1.0]);
         let name = format!("{} {}", self.scene.meshes[mesh as usize].name, self.scene.objects.len());
-        let plain = Object { name, mesh, world_from_object, colour, dynamic: false, translucent: false, masked: false };
-        self.scene.objects.push(plain);
+        self.scene.objects.push(Object {
+            name,
+            mesh,
+            world_from_object,
+            colour,
+            dynamic: false,
+            translucent: false,
+            masked: false,
+            surface: Surface::default(),
+        });
     }
 }
 
 /// A mesh with normals that point away from its middle.
 pub fn mesh(name: &str, topology: Topology, positions: Vec<Vec3>, indices: Vec<u32>) -> Mesh {
     let normals = positions.iter().map(|position| position.normalize_or(Vec3::Z)).collect();
-    Mesh { name: name.into(), topology, positions, normals, indices, declared_bounds: None }
+    Mesh { name: name.into(), topology, positions, normals, indices, ..Mesh::default() }
 }
 
 /// The cube from -1/2 to 1/2.

@@ -6,9 +6,6 @@ mod runs;
 use super::*;
 use crate::results::{Device, FrameMs, Frames, Method, Scene, SCHEMA};
 
-/// Methods that later issues bring.
-const PLANNED: [&str; 2] = ["chc++", "nohc"];
-
 #[test]
 fn every_table_is_whole() {
     for table in TABLES {
@@ -28,8 +25,8 @@ fn every_table_is_whole() {
             assert_eq!(table.columns.iter().filter(|column| column.head == head).count(), 1, "{}: {head}", table.id);
         }
         for column in table.columns {
-            let known = culling::find(column.method).is_ok() || PLANNED.contains(&column.method);
-            assert!(known || column.method == "warp", "{}: {} is no method, nor planned", table.id, column.method);
+            let known = culling::find(column.method).is_ok() || column.method == "warp";
+            assert!(known, "{}: {} is no method", table.id, column.method);
         }
         assert_eq!(find(table.id).unwrap().id, table.id);
         // What the table sets, its methods have.

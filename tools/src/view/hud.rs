@@ -15,7 +15,7 @@ pub fn state(lab: &Lab, controls: &Controls, told: &str, letters: usize) -> Vec<
     let session = &lab.session;
     let [width, height] = session.options().size;
     let device = session.gpu.info().map_or("", |info| info.name.as_str());
-    let objects = session.world.len();
+    let objects = session.world.total();
     let known = &lab.known;
     let mut lines = vec![format!("{}  {objects} objects  {width}x{height}  {device}", session.scene.name)];
     let guarantee = lab.contender().map_or(String::new(), |contender| contender.guarantee().to_string());

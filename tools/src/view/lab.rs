@@ -192,8 +192,8 @@ impl Lab {
             return Ok(());
         }
         let visible = if is_ideal {
-            let mut sets = VisibleSets::new(self.session.world.len());
-            sets.push_items(&draw_all_of(&self.session, view)?.items);
+            let mut sets = VisibleSets::new(self.session.world.total());
+            sets.push_items(&draw_all_of(&self.session, view)?.visible_items());
             Some(Arc::new(sets))
         } else {
             None
@@ -228,7 +228,7 @@ impl Lab {
 
     fn compare(&mut self, view: &View, images: &FrameImages) -> Result<()> {
         let truth =
-            Truth::new(draw_all_of(&self.session, view).context("drawing the truth")?, self.session.world.len())?;
+            Truth::new(draw_all_of(&self.session, view).context("drawing the truth")?, self.session.world.total())?;
         let drawn = self.ran.as_ref().and_then(|ran| ran.drawn.as_ref()).context("what was drawn is not known")?;
         self.known.error = Some(compare(&truth, images, &drawn.objects)?);
         self.truth = Some(truth);

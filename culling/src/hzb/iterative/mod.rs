@@ -17,12 +17,13 @@ mod steps;
 pub mod twin;
 
 use super::Pyramid;
+use crate::eovc::filter_occluders;
 use crate::roc::depth_plane;
 use crate::world::Still;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
-use shaders::types::{FILTER_STRIP, MOST_STEP_RANGES};
+use shaders::types::MOST_STEP_RANGES;
 use shaders::{eovc, hzb, Stage};
 use steps::{Step, Steps};
 
@@ -56,7 +57,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "finest",
-        default: "3",
+        default: "2",
         values: "1..=3",
         help: "finest level of the pyramid: a texel is 2, 4 or 8 pixels a side",
     },
@@ -83,7 +84,8 @@ const PARTS: [&str; MOST_STEP_RANGES as usize + 1] = ["step 0", "step 1", "step 
 
 struct Iterative {
     gpu: Gpu,
-    visible: [Buffer<u32>; 2],
+    /// Who was seen, by object. What is drawn is added at once: a step that looked at it looks at no object of its ranges again.
+    seen: Buffer<u32>,
     steps: Steps,
     pyramid: Option<Pyramid>,
     hurry: Hurry,
@@ -97,17 +99,15 @@ struct Iterative {
     first_step: u32,
     /// Nothing was seen before this frame.
     afresh: bool,
-    now: usize,
     still: Still,
 }
 
 /// Makes the method.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let (gpu, world, options) = (setup.gpu, setup.world, setup.options);
-    let flags = |name: &str| Buffer::new(gpu, name, world.len(), Placement::Storage);
     Ok(Box::new(Iterative {
         gpu: gpu.clone(),
-        visible: [flags("hzb.visible_even")?, flags("hzb.visible_odd")?],
+        seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
         steps: Steps::new(gpu, world, options)?,
         pyramid: None,
         hurry: Hurry::new(options.text("ranges").parse().ok(), world),
@@ -117,7 +117,6 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         ranges: 1,
         first_step: 0,
         afresh: true,
-        now: 0,
         still: Still::new(options).settled_after(SETTLED_AFTER),
     }))
 }
@@ -140,17 +139,12 @@ impl Method for Iterative {
         self.ranges = self.hurry.ranges(view);
         self.first_step = if self.afresh { 1 } else { 0 };
         self.until_filtering = if filters { self.every - 1 } else { self.until_filtering - 1 };
-        self.now = 1 - self.now;
-        let (before, now) = (&self.visible[1 - self.now], &self.visible[self.now]);
         self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
 
         if self.afresh {
-            f.fill("hzb/clear_seen", before, 0);
+            f.fill("hzb/forget_seen", &self.seen, 0);
         }
-        if !filters {
-            f.copy("hzb/keep_visible", before.all(), now.all());
-        }
-        self.steps.measure(f, world); // 1. where each block of objects lies along the view
+        self.steps.measure(f, world, self.ranges); // 1. where each block of objects lies along the view
         for number in self.first_step..=self.ranges {
             f.part(PARTS[number as usize]);
             let behind = number > self.first_step;
@@ -160,13 +154,13 @@ impl Method for Iterative {
                     _ => pyramid.reduce_if(f, target, self.steps.reductions()), // if the last step drew anything
                 }
             }
-            let step = Step { number, behind, seen: before.all(), visible: now.all() };
+            let step = Step { number, behind, seen: self.seen.all() };
             self.steps.find(f, world, pyramid, &step); // 3. what is due and not hidden: seen of this range, unseen of the one before
             self.steps.test_boxes(f, world, &step, target); // 4. of what was not seen, only what shows by its box
             self.steps.draw(f, world, &step, view, target); // 5. draw it, and go on to the next range
         }
         f.part("");
-        self.filter(f, filters.then_some(now), target)?; // 6. every few frames: who owns a pixel
+        self.filter(f, filters, target)?; // 6. every few frames: who owns a pixel
         self.afresh = false;
         Ok(())
     }
@@ -176,7 +170,7 @@ impl Method for Iterative {
         self.hurry.forget();
         self.afresh = true;
         self.until_filtering = 0;
-        self.visible.iter_mut().try_for_each(|flags| Ok(flags.write(&vec![0; flags.len()])?))
+        Ok(self.seen.write(&vec![0; self.seen.len()])?)
     }
 }
 
@@ -187,24 +181,23 @@ impl Iterative {
     }
 
     /// What is seen is whoever owns a pixel of the item buffer (EOVC thesis III.6.2).
-    fn filter(&self, f: &mut Frame, seen: Option<&Buffer<u32>>, target: &Target) -> Result<()> {
-        let Some(seen) = seen else {
+    fn filter(&self, f: &mut Frame, filters: bool, target: &Target) -> Result<()> {
+        if !filters {
             f.skip(eovc::FilterOccluders::INFO.name, "filtered a few frames ago");
             return Ok(());
-        };
+        }
         let needs = || Error::Missing {
             method: "hzb-iterative",
             needs: "the item buffer to find out what is seen; bind it".into(),
         };
         let owners = target.item.ok_or_else(needs)?;
-        f.fill("hzb/clear_visible", seen, 0);
-        let strips = target.size[1].div_ceil(FILTER_STRIP);
-        let filter = eovc::FilterOccluders { owners, occluders: seen.all(), size_px: target.size, strips };
-        f.dispatch(filter, strips * target.size[0]);
+        f.fill("hzb/clear_seen", &self.seen, 0);
+        filter_occluders(f, owners, target.size, self.seen.all());
         Ok(())
     }
 
-    /// Camera and objects unchanged: the last frame's lists hold.
+    /// Camera and objects unchanged: the last frame's lists hold. In a single range the first is who owned a pixel in the frame before it,
+    /// so that what the others hold shows nowhere.
     fn same_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
         let stages = [
             hzb::MeasureBlocks::INFO,
@@ -218,10 +211,10 @@ impl Iterative {
         ];
         stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
         Pyramid::skip(f, Still::REASON);
-        for number in self.first_step..=self.ranges {
+        let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };
+        for number in self.first_step..=last_step {
             f.part(PARTS[number as usize]);
-            let visible = self.visible[self.now].all();
-            let step = Step { number, behind: number > self.first_step, seen: visible, visible };
+            let step = Step { number, behind: number > self.first_step, seen: self.seen.all() };
             self.steps.draw(f, world, &step, view, target);
         }
         f.part("");

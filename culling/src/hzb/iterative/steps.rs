@@ -16,10 +16,8 @@ pub(super) struct Step {
     pub number: u32,
     /// Something was drawn before it.
     pub behind: bool,
-    /// What the last frame saw, by object.
+    /// What the last frame saw, by object; what this one draws is added.
     pub seen: BufferRef<u32>,
-    /// What this one draws is added here.
-    pub visible: BufferRef<u32>,
 }
 
 /// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
@@ -106,17 +104,18 @@ impl Steps {
             coarsest_level: pyramid.coarsest_level(),
             range_count,
             share: self.share,
-            second_kind: first_of(1),
-            third_kind: first_of(2),
+            later_kinds: std::array::from_fn(|later| first_of(later + 1)),
         };
         self.shape.look(view)?;
         self.reductions[0].write(&pyramid.grids())?;
         Ok(self.view.write(&[all])?)
     }
 
-    /// Where blocks lie along the view.
-    pub fn measure(&self, f: &mut Frame, world: &World) {
-        f.fill("hzb/clear_reach", &self.reach, 0);
+    /// Where blocks lie along the view, and, if there is more than one range, between where they begin.
+    pub fn measure(&self, f: &mut Frame, world: &World, range_count: u32) {
+        if range_count > 1 {
+            f.fill("hzb/clear_reach", &self.reach, 0);
+        }
         let measure = hzb::MeasureBlocks {
             bounds: world.block_bounds(),
             spans: self.spans.all(),
@@ -143,6 +142,7 @@ impl Steps {
             levels,
             pyramid: texels,
             due: self.due.all(),
+            seen: step.seen,
             step: number,
             constants: hzb::TestBlocksConstants { footprint_texels, behind, finest_level },
         };
@@ -165,7 +165,13 @@ impl Steps {
             shown: self.shown.all(),
             counts,
             step: number,
-            constants: hzb::TestObjectsConstants { footprint_texels, behind, boxes: self.tests_boxes, finest_level },
+            constants: hzb::TestObjectsConstants {
+                footprint_texels,
+                behind,
+                boxes: self.tests_boxes,
+                kind_count,
+                finest_level,
+            },
         };
         f.dispatch_indirect(test, blocks);
         let (starts, totals) = (self.starts.all(), self.totals[number as usize].all());
@@ -195,8 +201,9 @@ impl Steps {
             object_meshes: world.object_meshes(),
             meshes: world.meshes(),
             commands: self.commands[number as usize].all(),
-            visible: step.visible,
+            visible: step.seen,
             small_indices: self.small_indices,
+            constants: hzb::WriteBlocksConstants { kind_count },
         };
         f.dispatch_indirect(write, blocks.from(LISTED_GRID as usize));
     }
@@ -214,7 +221,7 @@ impl Steps {
             shown: self.shown.all(),
             views: self.shape.view(),
             drawn: commands,
-            visible: step.visible,
+            visible: step.seen,
         };
         if self.kinds > 0 {
             f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());
@@ -239,14 +246,8 @@ impl Steps {
     fn draws<'a>(&'a self, world: &'a World, step: u32) -> impl Iterator<Item = IndexedIndirect> + 'a {
         self.assert_made_for(world);
         let (commands, totals) = (&self.commands[step as usize], &self.totals[step as usize]);
-        world.ranges().iter().enumerate().map(move |(kind, range)| IndexedIndirect {
-            vertices: world.vertices().into(),
-            instances: world.objects().into(),
-            indices: world.indices().into(),
-            commands: commands.all().from(range.first as usize).into(),
-            count: Some(totals.all().from(kind)),
-            max_draws: range.count,
-            primitives: range.primitives,
+        world.ranges().iter().enumerate().map(move |(kind, range)| {
+            world.multi_draw(range, commands.all().from(range.first as usize), Some(totals.all().from(kind)))
         })
     }
 

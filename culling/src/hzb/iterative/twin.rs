@@ -50,10 +50,10 @@ pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, Rea
     (spans, reach)
 }
 
-/// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `pyramid`: of what was drawn before, if
+/// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `seen`: what the last frame saw, by object. `pyramid`: of what was drawn before, if
 /// anything was. Twin of `hzb/test_blocks`.
 pub fn test_blocks(
-    blocks: &[Bounds],
+    (blocks, seen): (&[Bounds], &[u32]),
     spans: &mut [BlockSpan],
     reach: Reach,
     all: &StepView,
@@ -62,9 +62,11 @@ pub fn test_blocks(
 ) -> Vec<u32> {
     let range = |depth: f32| reach.range_of(depth, all);
     let mut due = Vec::with_capacity(blocks.len());
+    let mut of_block = seen.chunks(BLOCK_OBJECTS as usize);
     for (block, span) in blocks.iter().zip(spans) {
+        let was_seen = of_block.next().is_some_and(|objects| objects.iter().any(|seen| *seen != 0));
         let ranges = range(span.begin)..=range(span.end) + 1;
-        let is_due = span.begin <= span.end && ranges.contains(&step);
+        let is_due = span.begin <= span.end && ranges.contains(&step) && (step > 0 || was_seen);
         let is_hidden = is_due && pyramid.is_some_and(|pyramid| !is_visible(block, &all.view, pyramid));
         if is_hidden {
             *span = NOWHERE;

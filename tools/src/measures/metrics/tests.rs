@@ -17,6 +17,7 @@ fn picture() -> FrameImages {
         colour: vec![[10, 20, 40, 255]; pixels],
         depth: vec![0.0; pixels],
         items: vec![NO_ITEM; pixels],
+        seen_through: vec![],
     };
     for y in 0..HEIGHT {
         for x in 0..16 {
@@ -169,6 +170,7 @@ fn pictures_smaller_than_a_window_are_compared_as_one_window() {
             colour: vec![[200, 100, 50, 255]; pixels],
             depth: vec![0.5; pixels],
             items: vec![0; pixels],
+            seen_through: vec![],
         };
         let truth = Truth::new(images.clone(), 1).unwrap();
         let same = compare(&truth, &images, &[true]).unwrap();
@@ -203,7 +205,9 @@ fn broken_input_is_an_error_that_says_where() {
     let turned = with(|i| (i.width, i.height) = (HEIGHT, WIDTH));
     assert!(matches!(compare(&truth, &turned, &drawn), Err(MetricError::Sizes { .. })));
     assert!(matches!(compare(&truth, &picture(), &drawn[1..]), Err(MetricError::DrawListLength { .. })));
-    let empty = with(|i| *i = FrameImages { width: 0, height: 0, colour: vec![], depth: vec![], items: vec![] });
+    let empty = with(|i| {
+        *i = FrameImages { width: 0, height: 0, colour: vec![], depth: vec![], items: vec![], seen_through: vec![] }
+    });
     assert!(matches!(Truth::new(empty, 0), Err(MetricError::Size { .. })));
 }
 

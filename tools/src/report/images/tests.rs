@@ -18,6 +18,7 @@ fn frame(holes: usize) -> FrameImages {
         colour: vec![[200, 100, 40, 255]; pixels],
         depth: vec![0.5; pixels],
         items: vec![0; pixels],
+        seen_through: vec![],
     };
     images.colour[..holes].fill([0, 0, 0, 255]);
     images.depth[..holes].fill(0.0);

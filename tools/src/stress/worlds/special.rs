@@ -1,5 +1,6 @@
 //! The catalogue of worlds that are hard in one way each.
 
+use super::materials::{back_faces, glass_wall, masked_wall, plain_glass};
 use super::{cube, dust, mesh, shot, sized, square, turned, walled, wander, wires, Case, Maker, PERSPECTIVE};
 use crate::stress::Random;
 use glam::{DMat4, DVec3, Vec3};
@@ -26,6 +27,10 @@ pub fn special() -> Vec<Case> {
         far_from_the_origin(),
         near_and_far(),
         beyond_floats(),
+        masked_wall(),
+        glass_wall(),
+        plain_glass(),
+        back_faces(),
     ]
 }
 

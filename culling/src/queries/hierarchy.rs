@@ -1,0 +1,199 @@
+//! The hierarchy of `eovc` on the host, and what is remembered of each node.
+
+use crate::eovc::Tree;
+use crate::roc::twin::selection;
+use crate::{Options, Result, Setup, TestedBoxes, View, World};
+use glam::DVec3;
+use scenes::bvh::{Split, NO_NODE};
+use scenes::Aabb;
+use shaders::types::{CullView, SELECT_NONE, SELECT_TESTED};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Where a box lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Out of view.
+    Outside,
+    /// In view, and reaches the near plane: its box cannot be asked about.
+    Near,
+    /// In view.
+    Testable,
+}
+
+impl Place {
+    pub(super) fn of(bound: &shaders::types::Bounds, view: &CullView) -> Place {
+        match selection(bound, 0, view) {
+            SELECT_NONE => Place::Outside,
+            SELECT_TESTED => Place::Testable,
+            _ => Place::Near,
+        }
+    }
+}
+
+/// What is remembered of a node.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct State {
+    /// The last visit found it visible.
+    pub(super) visible: bool,
+    /// The frame of that visit; 0: none yet.
+    pub(super) visited: u64,
+    /// The frame from which on it was found hidden.
+    pub(super) hidden_since: u64,
+    /// The frame of the last, or of the next test of what is visible: as the method counts.
+    pub(super) test: u64,
+    /// It is drawn as a whole, though it is no leaf.
+    pub(super) whole: bool,
+}
+
+/// The square of the least distance of a box to a point.
+pub(super) fn distance(bounds: &Aabb, eye: DVec3) -> f64 {
+    (bounds.min - eye).max(eye - bounds.max).max(DVec3::ZERO).length_squared()
+}
+
+/// The tree, what is known of its nodes, and the queue that brings them near to far.
+pub(super) struct Hierarchy {
+    pub(super) tree: Tree,
+    states: Vec<State>,
+    pub(super) frame: u64,
+    unbounded: Vec<u32>,
+    builds: u32,
+    queue: BinaryHeap<Reverse<(u64, u32)>>,
+    eye: DVec3,
+    pub(super) view: CullView,
+}
+
+impl Hierarchy {
+    pub(super) fn new(setup: &Setup<'_>) -> Result<Self> {
+        let tree = Tree::new(setup.gpu, setup.world, split(setup.options))?;
+        let unbounded = tree.unbounded().iter().enumerate().filter(|(_, unbounded)| **unbounded != 0);
+        Ok(Hierarchy {
+            unbounded: unbounded.map(|(object, _)| object as u32).collect(),
+            states: vec![State::default(); tree.len()],
+            frame: 0,
+            builds: tree.builds(),
+            queue: BinaryHeap::new(),
+            eye: DVec3::ZERO,
+            view: CullView::default(),
+            tree,
+        })
+    }
+
+    /// Begins a frame. True if the tree is as it was; else nothing is remembered of its nodes.
+    pub(super) fn begin(&mut self, world: &World, view: &View) -> Result<bool> {
+        self.tree.follow(world)?;
+        let same = self.tree.builds() == self.builds;
+        if !same {
+            self.builds = self.tree.builds();
+            self.forget();
+        }
+        self.frame += 1;
+        self.eye = view.pose.position;
+        self.view = view.cull();
+        self.queue.clear();
+        if !self.tree.is_empty() {
+            self.push(0);
+        }
+        Ok(same)
+    }
+
+    /// Forgets what was seen.
+    pub(super) fn forget(&mut self) {
+        self.states.fill(State::default());
+        self.frame = 0;
+    }
+
+    /// Objects that are not in the tree, or whose bounds cannot be tested: always drawn.
+    pub(super) fn unbounded(&self) -> &[u32] {
+        &self.unbounded
+    }
+
+    pub(super) fn state(&self, node: u32) -> &State {
+        &self.states[node as usize]
+    }
+
+    pub(super) fn state_mut(&mut self, node: u32) -> &mut State {
+        &mut self.states[node as usize]
+    }
+
+    /// The last frame looked at the node and found it visible.
+    pub(super) fn was_visible(&self, node: u32) -> bool {
+        let state = self.state(node);
+        state.visible && state.visited + 1 == self.frame
+    }
+
+    /// Frames in a row for which the node has been hidden; 0 if that is not known.
+    pub(super) fn hidden_for(&self, node: u32) -> u64 {
+        let state = self.state(node);
+        if state.visited == 0 || state.visible {
+            return 0;
+        }
+        self.frame - state.hidden_since
+    }
+
+    pub(super) fn place(&self, node: u32) -> Place {
+        Place::of(&self.tree.host_nodes()[node as usize].bounds, &self.view)
+    }
+
+    /// The object of a leaf, unless it is drawn anyway.
+    pub(super) fn object(&self, node: u32) -> Option<u32> {
+        self.tree.host().nodes()[node as usize].object().filter(|object| self.tree.unbounded()[*object as usize] == 0)
+    }
+
+    pub(super) fn children(&self, node: u32) -> Option<[u32; 2]> {
+        self.tree.host().nodes()[node as usize].children()
+    }
+
+    /// The nearest node of the queue.
+    pub(super) fn pop(&mut self) -> Option<u32> {
+        self.queue.pop().map(|Reverse((_, node))| node)
+    }
+
+    pub(super) fn push(&mut self, node: u32) {
+        let near = distance(&self.tree.host().nodes()[node as usize].bounds, self.eye);
+        // Numbers of 0 and more have the order of their bits.
+        self.queue.push(Reverse((near.to_bits(), node)));
+    }
+
+    /// Notes that the node was looked at and nothing of it has been seen yet.
+    pub(super) fn visit(&mut self, node: u32) {
+        let frame = self.frame;
+        let state = self.state_mut(node);
+        if state.visited == 0 || state.visible {
+            state.hidden_since = frame;
+        }
+        state.visible = false;
+        state.visited = frame;
+    }
+
+    /// A visible node makes those above it visible: the hierarchy is opened as far in the next frame.
+    pub(super) fn pull_up(&mut self, node: u32) {
+        let mut node = node;
+        while node != NO_NODE {
+            let frame = self.frame;
+            let state = self.state_mut(node);
+            if state.visible && state.visited == frame {
+                return;
+            }
+            state.visible = true;
+            state.visited = frame;
+            node = self.tree.host().parents()[node as usize];
+        }
+    }
+
+    /// The boxes of some nodes.
+    pub(super) fn boxes(&self, nodes: &[u32]) -> TestedBoxes {
+        let (leaves, groups): (Vec<_>, Vec<_>) =
+            nodes.iter().map(|node| &self.tree.host().nodes()[*node as usize]).partition(|node| node.is_leaf());
+        let bounds = |nodes: Vec<&scenes::bvh::Node>| nodes.into_iter().map(|node| node.bounds).collect();
+        TestedBoxes { groups: bounds(groups), singles: bounds(leaves) }
+    }
+}
+
+fn split(options: &Options) -> Split {
+    match options.text("bvh") {
+        "middle" => Split::Middle,
+        "equal" => Split::EqualCount,
+        _ => Split::Sah,
+    }
+}

@@ -1,0 +1,172 @@
+//! Materials on the GPU, for scenes that are drawn with them: texture coordinates and colours beside each vertex, a material for each
+//! object, and all textures as one buffer of texels, which every device can read (not every device indexes textures).
+
+mod texels;
+
+use super::View;
+use crate::Result;
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Queried, Surface, Target};
+use scenes::{Scene, Wrap};
+use shaders::draw::{MaskedVertex, ObjectsVertex};
+use shaders::types::{Material, WRAP_BITS, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
+use shaders::{draw, BufferRef};
+use std::collections::HashMap;
+use texels::Texels;
+
+/// What textured stages read beside what all read.
+pub(super) struct Detail {
+    vertices: Buffer<MaskedVertex>,
+    object_materials: Buffer<u32>,
+    materials: Buffer<Material>,
+    texels: Buffer<u32>,
+}
+
+impl Detail {
+    /// For vertices in the scene's order and objects in the world's.
+    pub(super) fn new(gpu: &Gpu, scene: &Scene, plain: &[ObjectsVertex], scene_object: &[u32]) -> Result<Self> {
+        let texels = Texels::new(scene);
+        let (object_materials, materials) = materials(scene, &texels, scene_object);
+        let storage = Placement::Storage;
+        Ok(Detail {
+            vertices: Buffer::with_data(gpu, "world.textured_vertices", &vertices(scene, plain), Placement::Geometry)?,
+            object_materials: Buffer::with_data(gpu, "world.object_materials", &object_materials, storage)?,
+            materials: Buffer::with_data(gpu, "world.materials", &materials, storage)?,
+            texels: Buffer::with_data(gpu, "world.texels", &texels.all, storage)?,
+        })
+    }
+
+    fn dressed(&self, draw: IndexedIndirect) -> IndexedIndirect {
+        IndexedIndirect { vertices: self.vertices.all().into(), ..draw }
+    }
+
+    fn parts(&self) -> (BufferRef<u32>, BufferRef<Material>, BufferRef<u32>) {
+        (self.object_materials.all(), self.materials.all(), self.texels.all())
+    }
+
+    pub(super) fn draw(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+        let (object_materials, materials, texels) = self.parts();
+        let (view, is_cut) = (view.gpu(), draw.surface == Surface::Masked);
+        let draw = self.dressed(draw);
+        match (is_cut, target.item.is_some()) {
+            (false, false) => f.draw(draw::Textured { object_materials, materials, texels, view }, draw, target),
+            (false, true) => f.draw(draw::TexturedAndItems { object_materials, materials, texels, view }, draw, target),
+            (true, false) => f.draw(draw::Masked { object_materials, materials, texels, view }, draw, target),
+            (true, true) => f.draw(draw::MaskedAndItems { object_materials, materials, texels, view }, draw, target),
+        }
+    }
+
+    /// The same, each command counted by a query: of masked objects, what is left of them.
+    pub(super) fn query(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        queried: Queried<'_>,
+        view: &View,
+        target: &Target,
+    ) {
+        let (object_materials, materials, texels) = self.parts();
+        let (view, is_cut) = (view.gpu(), draw.surface == Surface::Masked);
+        let draw = self.dressed(draw);
+        match (is_cut, target.item.is_some()) {
+            (false, false) => {
+                f.query_objects(draw::Textured { object_materials, materials, texels, view }, draw, queried, target)
+            }
+            (false, true) => f.query_objects(
+                draw::TexturedAndItems { object_materials, materials, texels, view },
+                draw,
+                queried,
+                target,
+            ),
+            (true, false) => {
+                f.query_objects(draw::Masked { object_materials, materials, texels, view }, draw, queried, target)
+            }
+            (true, true) => f.query_objects(
+                draw::MaskedAndItems { object_materials, materials, texels, view },
+                draw,
+                queried,
+                target,
+            ),
+        }
+    }
+
+    pub(super) fn draw_flagged(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        visible: BufferRef<u32>,
+        view: &View,
+        target: &Target,
+    ) {
+        let (object_materials, materials, texels) = self.parts();
+        if draw.surface == Surface::Masked {
+            // Colour and depth first, then who of them shows: see draw/masked_flags.
+            self.draw(f, draw, view, target);
+            let stage = draw::MaskedFlags { object_materials, materials, texels, visible, view: view.gpu() };
+            let test = Target { strictly_nearer: false, ..target.test_only() };
+            f.draw_unshown(stage, self.dressed(draw), &test);
+            return;
+        }
+        let (view, draw) = (view.gpu(), self.dressed(draw));
+        if target.item.is_some() {
+            let stage = draw::TexturedItemsAndFlags { object_materials, materials, texels, visible, view };
+            f.draw(stage, draw, target);
+        } else {
+            f.draw(draw::TexturedAndFlags { object_materials, materials, texels, visible, view }, draw, target);
+        }
+    }
+
+    /// Masked objects on a target that holds counts.
+    pub(super) fn draw_counted(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+        let (object_materials, materials, texels) = self.parts();
+        let stage = draw::MaskedOverdraw { object_materials, materials, texels, view: view.gpu() };
+        f.draw(stage, self.dressed(draw), target);
+    }
+}
+
+fn vertices(scene: &Scene, plain: &[ObjectsVertex]) -> Vec<MaskedVertex> {
+    let extras = scene.meshes.iter().flat_map(|mesh| {
+        (0..mesh.positions.len()).map(|vertex| {
+            let at = mesh.texture_coordinates.get(vertex).map_or([0.0; 2], |at| at.to_array());
+            (at, mesh.colours.get(vertex).map_or(u32::MAX, |colour| u32::from_le_bytes(*colour)))
+        })
+    });
+    let dressed = |(plain, (coordinates, tint)): (&ObjectsVertex, ([f32; 2], u32))| MaskedVertex {
+        position: plain.position,
+        normal_snorm16: plain.normal_snorm16,
+        coordinates,
+        tint,
+    };
+    plain.iter().zip(extras).map(dressed).collect()
+}
+
+/// Each object's material, and all of them.
+fn materials(scene: &Scene, texels: &Texels, scene_object: &[u32]) -> (Vec<u32>, Vec<Material>) {
+    let mut materials = Vec::new();
+    let mut known = HashMap::new();
+    let of_object = scene_object.iter().map(|object| {
+        let object = &scene.objects[*object as usize];
+        let mesh = &scene.meshes[object.mesh as usize];
+        // Without coordinates there is nothing to look up.
+        let texture = object.surface.texture.filter(|_| !mesh.texture_coordinates.is_empty());
+        *known.entry((texture, object.surface.cutoff.to_bits())).or_insert_with(|| {
+            let placed = texture.map(|texture| (texels.places[texture as usize], &scene.textures[texture as usize]));
+            let cutoff = object.surface.cutoff;
+            materials.push(placed.map_or(Material { cutoff, ..Material::default() }, |(place, texture)| {
+                let [x, y] = texture.wrap.map(wrap_mode);
+                let [width, height] = place.size;
+                let (first_texel, levels) = (place.first, place.levels);
+                Material { first_texel, width, height, levels, wrap: x | y << WRAP_BITS, cutoff }
+            }));
+            (materials.len() - 1) as u32
+        })
+    });
+    (of_object.collect(), materials)
+}
+
+fn wrap_mode(wrap: Wrap) -> u32 {
+    match wrap {
+        Wrap::Repeat => WRAP_REPEAT,
+        Wrap::Mirror => WRAP_MIRROR,
+        Wrap::Clamp => WRAP_CLAMP,
+    }
+}

@@ -1,0 +1,15 @@
+// queries/test_objects: the boxes of listed objects, each counted by an occlusion query: no colour, no depth is written (GPU Gems
+// 29.2). The boxes are grown to cover all that their objects can (include/box.glsl).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "box.glsl"
+
+layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
+layout(set = 0, binding = 1, scalar) readonly buffer Listed { uint items[]; } listed;
+layout(set = 0, binding = 2, scalar) readonly buffer ViewBlock { BoxView items[]; } views;
+
+invariant gl_Position;
+
+void main() {
+    gl_Position = clip_from_grown_corner(bounds.items[listed.items[gl_InstanceIndex]], views.items[0], uint(gl_VertexIndex));
+}
