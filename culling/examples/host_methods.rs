@@ -39,15 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = World::new(&gpu, &scene())?;
     let colour = Image::new(&gpu, "host.colour", Format::Colour, SIZE)?;
     let depth = Image::new(&gpu, "host.depth", Format::Depth, SIZE)?;
-    let shown = Some((colour.view(), Format::Colour));
-    let target = Target {
-        size: SIZE,
-        colour: shown,
-        item: None,
-        depth: depth.view(),
-        depth_read_only: false,
-        strictly_nearer: false,
-    };
+    let items = Image::new(&gpu, "host.items", Format::Item, SIZE)?;
+    let (shown, depth) = (Some((colour.view(), Format::Colour)), depth.view());
     for id in ["hzb", "eovc"] {
         let options = find(id)?.default_options();
         let mut method = (find(id)?.make)(&Setup { gpu: &gpu, world: &world, options: &options, visible: None })?;
@@ -55,8 +48,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let eye = DVec3::new(0.2 * frame as f64, 0.0, 0.0);
             let projection = Projection::Perspective { fov_y: 1.0, near: 0.1, far: None };
             let shot = Shot { pose: Pose::looking_at(eye, eye + DVec3::NEG_Z), projection, seconds: 0.0 };
+            let view = View::new(&shot, SIZE, frame, gpu.snap_px());
+            // Some methods look at who owns which pixel, every few frames.
+            let item = method.needs_items(&world, &view).then(|| items.view());
+            let target =
+                Target { size: SIZE, colour: shown, item, depth, depth_read_only: false, strictly_nearer: false };
             let mut f = gpu.frame();
-            method.frame(&mut f, &world, &View::new(&shot, SIZE, frame, gpu.snap_px()), &target)?;
+            method.frame(&mut f, &world, &view, &target)?;
             let report = f.finish()?;
             let drawn = drawn_objects(&gpu, &world, &report)?.objects.iter().filter(|drawn| **drawn).count();
             println!("{id}, frame {frame}: {drawn} of {} objects drawn in {:.2} ms", world.len(), report.frame_ms);
