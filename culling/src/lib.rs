@@ -19,6 +19,7 @@ pub mod queries;
 pub mod reference;
 pub mod roc;
 pub mod translucent;
+mod tree;
 pub mod warp;
 pub mod woc;
 pub mod world;

@@ -9,11 +9,15 @@ use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
-use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo, VertexFormat};
+use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo};
 use std::collections::HashMap;
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+
+mod vertices;
+
+pub(crate) use vertices::{INSTANCE_BINDING, VERTEX_BINDING};
 
 const ENTRY: &CStr = c"main";
 
@@ -256,7 +260,7 @@ fn draw_pipeline(
     state: &DrawState,
     stages: &[vk::PipelineShaderStageCreateInfo<'_>],
 ) -> Result<vk::Pipeline> {
-    let (bindings, attributes) = vertex_layout(info);
+    let (bindings, attributes) = vertices::vertex_layout(info);
     let vertex = vk::PipelineVertexInputStateCreateInfo::default()
         .vertex_binding_descriptions(&bindings)
         .vertex_attribute_descriptions(&attributes);
@@ -323,37 +327,6 @@ fn draw_pipeline(
 fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
     let formats = state.colour.into_iter().chain(state.item.then_some(Format::Item));
     formats.map(|format| format.vulkan(state.depth)).collect()
-}
-
-/// Where the vertex buffer and the instance buffer are bound.
-pub(crate) const VERTEX_BINDING: u32 = 0;
-pub(crate) const INSTANCE_BINDING: u32 = 1;
-
-fn vertex_layout(
-    info: &StageInfo,
-) -> (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>) {
-    let rates = [
-        (VERTEX_BINDING, info.vertex_stride, vk::VertexInputRate::VERTEX),
-        (INSTANCE_BINDING, info.instance_stride, vk::VertexInputRate::INSTANCE),
-    ];
-    let used = rates.into_iter().filter(|(_, stride, _)| *stride > 0);
-    let bindings =
-        used.map(|(binding, stride, input_rate)| vk::VertexInputBindingDescription { binding, stride, input_rate });
-    let attribute = |binding: u32, attribute: &shaders::VertexAttribute| vk::VertexInputAttributeDescription {
-        location: attribute.location,
-        binding,
-        format: match attribute.format {
-            VertexFormat::Float2 => vk::Format::R32G32_SFLOAT,
-            VertexFormat::Float3 => vk::Format::R32G32B32_SFLOAT,
-            VertexFormat::Float4 => vk::Format::R32G32B32A32_SFLOAT,
-            VertexFormat::Snorm16x2 => vk::Format::R16G16_SNORM,
-            VertexFormat::Uint => vk::Format::R32_UINT,
-        },
-        offset: attribute.offset,
-    };
-    let of_vertex = info.vertex.iter().map(|one| attribute(VERTEX_BINDING, one));
-    let of_instance = info.instance.iter().map(|one| attribute(INSTANCE_BINDING, one));
-    (bindings.collect(), of_vertex.chain(of_instance).collect())
 }
 
 /// Specialization constants in the form Vulkan takes them.

@@ -5,6 +5,7 @@
 pub mod draw;
 pub mod engine;
 pub mod eovc;
+pub mod example;
 pub mod farthest;
 pub mod frustum;
 pub mod hzb;
@@ -47,6 +48,7 @@ pub const STAGES: &[&StageInfo] = &[
     <eovc::QueryGroups as Stage>::INFO,
     <eovc::SelectOccludees as Stage>::INFO,
     <eovc::TestSingles as Stage>::INFO,
+    <example::CountCovered as Stage>::INFO,
     <farthest::DoubleSquares as Stage>::INFO,
     <farthest::FillFromDepth as Stage>::INFO,
     <farthest::TestBounds as Stage>::INFO,

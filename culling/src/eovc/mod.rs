@@ -14,11 +14,10 @@
 
 mod groups;
 mod options;
-mod tree;
 pub mod twin;
 
+pub use crate::tree::Tree;
 pub use options::OPTIONS;
-pub use tree::Tree;
 
 use crate::boxes::BoxList;
 use crate::pack::DrawList;

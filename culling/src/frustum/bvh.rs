@@ -3,8 +3,8 @@
 //! first against the plane that it failed at last time (*coherence*).
 
 use super::twin::{clip_from_bounds, farthest_along, footprint_widening, planes, too_small, ClipBox};
-use crate::eovc::Tree;
 use crate::pack::DrawList;
+use crate::tree::Tree;
 use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};

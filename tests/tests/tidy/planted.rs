@@ -171,3 +171,10 @@ fn circles_of_modules_are_caught() {
     modules(&straight, "use crate::b::c;\nuse crate::c;\n", tests, "// crate::a\nuse crate::b::X;\n");
     assert_eq!(straight.all_faults(), Vec::<String>::new());
 }
+
+/// The law once looked at no file here: the path to this workspace has a folder `tests` in it.
+#[test]
+fn the_law_of_circles_sees_this_workspace() {
+    let names = ["gpu", "memory"].map(str::to_owned);
+    assert_eq!(used_modules(&root().join("engine/src"), "frame", &names), ["gpu"]);
+}
