@@ -86,9 +86,13 @@ impl Method for After {
     }
 
     fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
-        let Some(mut tested) = self.method.tested_boxes(world)? else { return Ok(None) };
+        let (tested, translucent) = (self.method.tested_boxes(world)?, self.pass.boxes.read_listed()?);
+        if tested.is_none() && translucent.is_empty() {
+            return Ok(None);
+        }
         let boxes = world.all_host_bounds();
-        tested.singles.extend(self.pass.boxes.read_listed()?.into_iter().map(|object| boxes[object as usize]));
+        let mut tested = tested.unwrap_or_default();
+        tested.singles.extend(translucent.into_iter().map(|object| boxes[object as usize]));
         Ok(Some(tested))
     }
 
