@@ -198,6 +198,8 @@ fn create_device(
         .dynamic_rendering(true)
         .synchronization2(true)
         .maintenance4(true)
+        // What glslang makes of discard. Every Vulkan 1.3 device has it.
+        .shader_demote_to_helper_invocation(true)
         .subgroup_size_control(extras.has(Extra::SubgroupSizeControl))
         .compute_full_subgroups(extras.has(Extra::SubgroupSizeControl));
     let swapchain = windows.then_some(ash::khr::swapchain::NAME.as_ptr());
