@@ -222,7 +222,8 @@ fn poster(texture: Texture, repeats: u32) -> Case {
     mesh.texture_coordinates =
         mesh.positions.iter().map(|at| Vec2::new(first + reach * (at.x + 0.5), first + reach * (0.5 - at.y))).collect();
     let mesh = maker.mesh(mesh);
-    maker.place(mesh, sized(DVec3::ZERO, DVec3::new(2.0, 2.0, 1.0)));
+    // Evenly scaled, so that the normal stays.
+    maker.place(mesh, sized(DVec3::ZERO, DVec3::splat(2.0)));
     maker.scene.objects[0].colour = [1.0; 4];
     maker.scene.objects[0].surface = Surface { texture: Some(0), ..Surface::default() };
     let size = texture.size.map(|side| side * repeats);

@@ -102,7 +102,7 @@ impl Lab {
     pub fn truths(&mut self, shots: &[Shot]) -> Result<(Vec<Truth>, Arc<VisibleSets>)> {
         let truths = shots.iter().map(|shot| self.truth(shot)).collect::<Result<Vec<Truth>>>()?;
         let mut sets = VisibleSets::new(self.world.total());
-        truths.iter().for_each(|truth| sets.push_items(&truth.images().items));
+        truths.iter().for_each(|truth| sets.push_items(&truth.images().visible_items()));
         Ok((truths, Arc::new(sets)))
     }
 
