@@ -23,7 +23,12 @@ fn open(gpu: &engine::Gpu, file: &str, frames: usize) -> Session {
     assert!(Path::new(&scene).is_file(), "{scene} is missing: install assimp-testmodels (tools/setup.sh does)");
     let size = [160, 120];
     let options = SessionOptions { scene: scene.clone(), frames, size, whole_path: true, ..SessionOptions::default() };
-    Session::on(gpu, options).unwrap_or_else(|error| panic!("{scene}: {error:#}"))
+    let good = |session: anyhow::Result<Session>| session.unwrap_or_else(|error| panic!("{scene}: {error:#}"));
+    let session = good(Session::on(gpu, options.clone()));
+    // Flat ones show nothing from behind, where the path leads too; that is what tests/materials.rs is for.
+    let mut seen_from_both_sides = session.scene.clone();
+    seen_from_both_sides.objects.iter_mut().for_each(|object| object.surface.single_sided = false);
+    good(Session::with_scene(gpu, seen_from_both_sides, options))
 }
 
 fn covered(session: &mut Session) -> usize {
