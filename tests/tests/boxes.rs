@@ -69,7 +69,10 @@ fn lost_and_moved_boxes_are_caught() {
         });
         // Down a hierarchy no single object is asked about here.
         let by_groups = ["chc", "chc++", "nohc"].contains(&entry.id);
-        assert_caught(&moved, if by_groups { "hold fewer than two objects" } else { "single boxes belong to no object" });
+        assert_caught(
+            &moved,
+            if by_groups { "hold fewer than two objects" } else { "single boxes belong to no object" },
+        );
     }
 }
 
