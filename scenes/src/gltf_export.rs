@@ -55,6 +55,9 @@ pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Re
     export.finish(&scene.name)
 }
 
+/// What tells glTF materials apart: colour bits, alpha mode, cutoff bits, texture and sides.
+type MaterialKey = ([u32; 4], &'static str, u32, Option<u32>, bool);
+
 /// A glTF document in the making.
 #[derive(Default)]
 struct Export {
@@ -72,8 +75,7 @@ struct Export {
     channels: Vec<Value>,
     /// The primitive of each scene mesh, without its material; null for empty ones.
     primitives: Vec<Value>,
-    /// glTF material by colour bits, alpha mode, cutoff bits, texture and sides.
-    material_of: HashMap<([u32; 4], &'static str, u32, Option<u32>, bool), usize>,
+    material_of: HashMap<MaterialKey, usize>,
     /// glTF mesh by scene mesh and material.
     mesh_of: HashMap<(u32, usize), usize>,
 }
