@@ -37,10 +37,7 @@ pub(super) struct HostBounds {
 
 impl HostBounds {
     pub(super) fn new(world: &World) -> Result<Self> {
-        let mut bounds = world.read_bounds()?;
-        // Translucent objects come last, and are none of a method's.
-        bounds.truncate(world.len());
-        Ok(HostBounds { bounds, revision: world.revision() })
+        Ok(HostBounds { bounds: world.read_bounds()?, revision: world.revision() })
     }
 
     /// Objects in view, near to far, each with its place; those that are always kept come first.

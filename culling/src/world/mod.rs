@@ -335,8 +335,15 @@ impl World {
         &self.host.boxes
     }
 
-    /// Bounds as they are on the GPU now; for tests.
+    /// Bounds as they are on the GPU now, of the objects that culling methods see.
     pub fn read_bounds(&self) -> Result<Vec<Bounds>> {
+        let mut bounds = self.read_all_bounds()?;
+        bounds.truncate(self.len());
+        Ok(bounds)
+    }
+
+    /// The same of all objects, translucent ones too; for tests.
+    pub fn read_all_bounds(&self) -> Result<Vec<Bounds>> {
         Ok(self.bounds.read()?)
     }
 
