@@ -1,12 +1,29 @@
 //! The geometry-level hierarchy on the GPU (EOVC thesis III.1).
 
 use crate::world::{gpu_bounds, World};
-use crate::{Error, Result};
+use crate::{Error, OptionInfo, Options, Result};
 use engine::{Buffer, Gpu, Placement};
 use glam::DAffine3;
 use scenes::bvh::{BadBounds, Bvh, BvhOptions, Split, NO_NODE, REBUILD_FACTOR};
 use shaders::types::{Bounds, TreeNode, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC};
 use shaders::BufferRef;
+
+/// How the hierarchy is split.
+pub const SPLIT_OPTION: OptionInfo = OptionInfo {
+    name: "bvh",
+    default: "sah",
+    values: "sah|middle|equal",
+    help: "how the hierarchy is split (EOVC thesis, table 4)",
+};
+
+/// The split that a method's option `bvh` asks for.
+pub fn split(options: &Options) -> Split {
+    match options.text(SPLIT_OPTION.name) {
+        "middle" => Split::Middle,
+        "equal" => Split::EqualCount,
+        _ => Split::Sah,
+    }
+}
 
 /// A hierarchy over a world's objects, kept in step with them.
 pub struct Tree {

@@ -64,6 +64,40 @@ fn a_still_camera_has_only_drawn_who_owns_a_pixel() {
     assert!(before.false_positives > 0, "hidden objects whose boxes show were drawn before, or this proves nothing");
 }
 
+/// How many commands with an instance each draw of a frame has, in order.
+fn drawn_by_step(gpu: &engine::Gpu, take: &harness::Take) -> Vec<usize> {
+    let read = |draw: &engine::IndexedIndirect| {
+        let commands = gpu.read_bound::<shaders::types::DrawCommand>(&draw.commands).unwrap();
+        let count = draw.count.map_or(draw.max_draws, |count| gpu.read_bound::<u32>(&count.into()).unwrap()[0]);
+        commands[..count as usize].iter().filter(|command| command.instance_count > 0).count()
+    };
+    take.report.draws.iter().map(read).collect()
+}
+
+#[test]
+fn what_a_box_brought_in_is_drawn_ahead_in_the_next_frame() {
+    let gpu = gpu();
+    let case = worlds::walled(400);
+    // By a hair, up so that bodies come into view from behind the wall, and on by a hair.
+    let shot = |height: f64| {
+        let pose = scenes::Pose::looking_at(glam::DVec3::new(0.7, height, 7.0), glam::DVec3::ZERO);
+        scenes::Shot { pose, ..case.shots[0] }
+    };
+    let case = case.filmed([3.0, 3.0001, 3.8, 3.8001].map(shot).to_vec());
+    let mut lab = harness::Lab::new(&gpu, &case);
+    // In a single range, with every box tested, and nobody looking at the item buffer between the frames.
+    let subject = setting(&[("ranges", "1"), ("small", "0"), ("every", "64")]);
+    let mut method = lab.make(&subject, &Default::default());
+    let mut steps = Vec::new();
+    for (frame, shot) in case.shots.iter().enumerate() {
+        let take = lab.take(&mut *method, shot, frame);
+        steps.push(drawn_by_step(&gpu, &take));
+    }
+    let [ahead, behind] = steps[2][..] else { panic!("two steps: {steps:?}") };
+    assert!(behind > 10, "nothing comes into view, so this proves nothing: {steps:?}");
+    assert_eq!(steps[3], [ahead + behind, 0], "{steps:?}");
+}
+
 #[test]
 fn what_a_wall_hides_is_culled() {
     let gpu = gpu();

@@ -68,7 +68,7 @@ struct Eovc {
 /// Makes the method.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let (gpu, world, options) = (setup.gpu, setup.world, setup.options);
-    let tree = Tree::new(gpu, world, options::split(options))?;
+    let tree = Tree::new(gpu, world, crate::tree::split(options))?;
     let objects = |name: &str| Buffer::new(gpu, name, world.len(), Placement::Storage);
     let nodes = |name: &str| Buffer::new(gpu, name, tree.len(), Placement::Storage);
     Ok(Box::new(Eovc {

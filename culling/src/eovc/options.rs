@@ -2,7 +2,6 @@
 
 use crate::pack::Commands;
 use crate::{OptionInfo, Options};
-use scenes::bvh::Split;
 
 /// How the hierarchy is split, which groups are opened before they are rasterised, and the thesis' accelerations (III.6).
 pub const OPTIONS: &[OptionInfo] = &[
@@ -32,12 +31,7 @@ pub const OPTIONS: &[OptionInfo] = &[
         values: "packed|zero-instance",
         help: "draw commands packed in object order, or one an object with no instance where nothing is drawn",
     },
-    OptionInfo {
-        name: "bvh",
-        default: "sah",
-        values: "sah|middle|equal",
-        help: "how the hierarchy is split (thesis, table 4)",
-    },
+    crate::tree::SPLIT_OPTION,
     OptionInfo {
         name: "coherent",
         default: "true",
@@ -45,14 +39,6 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "open groups that recent frames saw into, instead of casting rays there again; false is the thesis",
     },
 ];
-
-pub(super) fn split(options: &Options) -> Split {
-    match options.text("bvh") {
-        "middle" => Split::Middle,
-        "equal" => Split::EqualCount,
-        _ => Split::Sah,
-    }
-}
 
 pub(super) fn commands(options: &Options) -> Commands {
     match options.text("commands") {

@@ -4,11 +4,10 @@
 
 use super::twin::{clip_from_bounds, farthest_along, footprint_widening, planes, too_small, ClipBox};
 use crate::pack::DrawList;
-use crate::tree::Tree;
+use crate::tree::{split, Tree};
 use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, View, Work, World};
 use engine::{Buffer, Frame, Placement, Target};
-use scenes::bvh::Split;
 use shaders::types::{CullView, TreeNode, OBJECT_ALWAYS_KEPT};
 
 /// What spares tests can be turned off.
@@ -27,12 +26,7 @@ pub const OPTIONS: &[OptionInfo] = &[
         values: "true|false",
         help: "test each node first against the plane that it failed at last",
     },
-    OptionInfo {
-        name: "bvh",
-        default: "sah",
-        values: "sah|middle|equal",
-        help: "how the hierarchy is split, as for eovc",
-    },
+    crate::tree::SPLIT_OPTION,
 ];
 
 /// The six planes, a bit each.
@@ -62,12 +56,7 @@ struct FrustumBvh {
 /// Makes the method.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let (gpu, world, options) = (setup.gpu, setup.world, setup.options);
-    let split = match options.text("bvh") {
-        "middle" => Split::Middle,
-        "equal" => Split::EqualCount,
-        _ => Split::Sah,
-    };
-    let tree = Tree::new(gpu, world, split)?;
+    let tree = Tree::new(gpu, world, split(options))?;
     Ok(Box::new(FrustumBvh {
         builds: tree.builds(),
         failed: vec![0; tree.len()],

@@ -10,12 +10,13 @@
 use super::hierarchy::{Hierarchy, Place};
 use super::nohc::Policy;
 use super::recording::{Asking, Recording};
-use super::{BVH_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION};
+use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
+use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
+pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, SPLIT_OPTION];
 
 struct Chc {
     on: Asking,
@@ -103,10 +104,10 @@ impl Walk {
         self.nodes.visit(node);
         if place == Place::Near {
             self.nodes.pull_up(node);
-            return self.open(node, frame);
+            return self.nodes.open(node, frame);
         }
         if was_visible && !ends_here {
-            return self.open(node, frame);
+            return self.nodes.open(node, frame);
         }
         if !self.policy.asks(&mut self.nodes, node, was_visible) {
             self.nodes.pull_up(node);
@@ -130,16 +131,7 @@ impl Walk {
         self.nodes.pull_up(node);
         if !was_visible {
             self.nodes.state_mut(node).whole = false;
-            self.open(node, frame)?;
-        }
-        Ok(())
-    }
-
-    /// Draws a leaf; of another node the children are looked at in their turn.
-    fn open(&mut self, node: u32, frame: &mut Recording<'_>) -> Result<()> {
-        match self.nodes.children(node) {
-            Some(children) => children.into_iter().for_each(|child| self.nodes.push(child)),
-            None => self.nodes.object(node).into_iter().try_for_each(|object| frame.draw(object))?,
+            self.nodes.open(node, frame)?;
         }
         Ok(())
     }

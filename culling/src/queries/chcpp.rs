@@ -13,7 +13,8 @@
 use super::hierarchy::{Hierarchy, Place};
 use super::multi;
 use super::recording::{Asking, Recording};
-use super::{BVH_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION};
+use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
+use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 use scenes::bvh::Bvh;
@@ -24,7 +25,7 @@ pub const OPTIONS: &[OptionInfo] = &[
     crate::world::DETAIL_OPTION,
     MIN_PIXELS_OPTION,
     WINDOW_OPTION,
-    BVH_OPTION,
+    SPLIT_OPTION,
     OptionInfo {
         name: "n_av",
         default: "10",
@@ -127,7 +128,7 @@ impl Method for ChcPlusPlus {
     fn forget(&mut self) -> Result<()> {
         self.walk.nodes.forget();
         self.left.clear();
-        self.on.left_answers()?;
+        self.on.last_answers()?;
         Ok(())
     }
 }
@@ -135,8 +136,7 @@ impl Method for ChcPlusPlus {
 impl ChcPlusPlus {
     /// A visible leaf whose box no longer shows is hidden from now on. (If the tree is then built anew, all is forgotten anyway.)
     fn check_last_answers(&mut self) -> Result<()> {
-        let mut answers = self.on.waited_answers();
-        answers.extend(self.on.left_answers()?);
+        let answers = self.on.last_answers()?;
         for (leaf, visible) in self.left.drain(..).zip(answers) {
             let frame = self.walk.nodes.frame;
             let state = self.walk.nodes.state_mut(leaf);
@@ -171,7 +171,7 @@ impl Walk {
         self.nodes.visit(node);
         if place == Place::Near {
             self.nodes.pull_up(node);
-            return self.open(node, frame);
+            return self.nodes.open(node, frame);
         }
         if !was_visible {
             self.i_queue.push(node);
@@ -185,7 +185,7 @@ impl Walk {
                 self.v_queue.push(node);
             }
         }
-        self.open(node, frame)
+        self.nodes.open(node, frame)
     }
 
     /// Asks about all in the i-queue.
@@ -209,7 +209,7 @@ impl Walk {
             self.nodes.pull_up(node);
             self.nodes.state_mut(node).test =
                 self.nodes.frame + 1 + chance(node, self.nodes.frame) % self.assumed_frames;
-            return self.open(node, frame);
+            return self.nodes.open(node, frame);
         }
         for node in nodes {
             self.ask(&[*node], frame)?;
@@ -221,15 +221,6 @@ impl Walk {
     fn ask(&self, nodes: &[u32], frame: &mut Recording<'_>) -> Result<()> {
         let tight = |node: &u32| tight_bounds(self.nodes.tree.host(), *node, self.levels, self.surface);
         frame.ask(&nodes.iter().flat_map(tight).collect::<Vec<_>>())
-    }
-
-    /// Draws a leaf; of another node the children are looked at in their turn.
-    fn open(&mut self, node: u32, frame: &mut Recording<'_>) -> Result<()> {
-        match self.nodes.children(node) {
-            Some(children) => children.into_iter().for_each(|child| self.nodes.push(child)),
-            None => self.nodes.object(node).into_iter().try_for_each(|object| frame.draw(object))?,
-        }
-        Ok(())
     }
 }
 

@@ -1,10 +1,11 @@
 //! The hierarchy of `eovc` on the host, and what is remembered of each node.
 
-use crate::eovc::Tree;
+use super::recording::Recording;
 use crate::roc::twin::selection;
-use crate::{Options, Result, Setup, TestedBoxes, View, World};
+use crate::tree::{split, Tree};
+use crate::{Result, Setup, TestedBoxes, View, World};
 use glam::DVec3;
-use scenes::bvh::{Split, NO_NODE};
+use scenes::bvh::NO_NODE;
 use scenes::Aabb;
 use shaders::types::{CullView, SELECT_NONE, SELECT_TESTED};
 use std::cmp::Reverse;
@@ -181,19 +182,20 @@ impl Hierarchy {
         }
     }
 
+    /// Draws a leaf; of another node the children are looked at in their turn.
+    pub(super) fn open(&mut self, node: u32, frame: &mut Recording<'_>) -> Result<()> {
+        match self.children(node) {
+            Some(children) => children.into_iter().for_each(|child| self.push(child)),
+            None => self.object(node).into_iter().try_for_each(|object| frame.draw(object))?,
+        }
+        Ok(())
+    }
+
     /// The boxes of some nodes.
     pub(super) fn boxes(&self, nodes: &[u32]) -> TestedBoxes {
         let (leaves, groups): (Vec<_>, Vec<_>) =
             nodes.iter().map(|node| &self.tree.host().nodes()[*node as usize]).partition(|node| node.is_leaf());
         let bounds = |nodes: Vec<&scenes::bvh::Node>| nodes.into_iter().map(|node| node.bounds).collect();
         TestedBoxes { groups: bounds(groups), singles: bounds(leaves) }
-    }
-}
-
-fn split(options: &Options) -> Split {
-    match options.text("bvh") {
-        "middle" => Split::Middle,
-        "equal" => Split::EqualCount,
-        _ => Split::Sah,
     }
 }

@@ -87,7 +87,7 @@ impl Method for QueryLag {
     }
 
     fn forget(&mut self) -> Result<()> {
-        self.on.left_answers()?;
+        self.on.last_answers()?;
         self.asked.clear();
         self.visible.fill(true);
         self.in_view.fill(false);
@@ -98,8 +98,7 @@ impl Method for QueryLag {
 
 impl QueryLag {
     fn check_last_answers(&mut self) -> Result<()> {
-        let mut answers = self.on.waited_answers();
-        answers.extend(self.on.left_answers()?);
+        let answers = self.on.last_answers()?;
         for (object, visible) in self.asked.drain(..).zip(answers) {
             self.visible[object as usize] = visible;
         }

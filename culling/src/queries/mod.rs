@@ -39,14 +39,6 @@ pub const MIN_PIXELS_OPTION: OptionInfo = OptionInfo {
     help: "draw only what a query counts so many samples of: errors for time; 1 leaves out nothing that shows",
 };
 
-/// How the hierarchy is split.
-const BVH_OPTION: OptionInfo = OptionInfo {
-    name: "bvh",
-    default: "sah",
-    values: "sah|middle|equal",
-    help: "how the hierarchy is split, as for eovc",
-};
-
 /// How many queries are under way at once.
 const WINDOW_OPTION: OptionInfo = OptionInfo {
     name: "window",

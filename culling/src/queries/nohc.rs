@@ -13,13 +13,14 @@ use super::chc;
 use super::costs::Costs;
 use super::hierarchy::Hierarchy;
 use super::multi::persistence;
-use super::{BVH_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION};
+use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
 use crate::frustum::twin::clip_from_bounds;
+use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, World};
 use shaders::types::CullView;
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, BVH_OPTION];
+pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, SPLIT_OPTION];
 
 /// The chance that what is visible is so in the next frame: the limit of p(t).
 const STAYS_VISIBLE: f64 = 0.99;

@@ -20,7 +20,7 @@ const MOST_STEPS: usize = 3_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Run {
     Nothing,
-    /// Objects of one kind of primitive.
+    /// Objects that are drawn in the same way.
     Draws(Option<Range>),
     /// Such objects, each counted by a query.
     QueriedDraws(Option<Range>),
@@ -80,15 +80,13 @@ impl Asking {
         })
     }
 
-    /// Answers to what the last frame asked and did not wait for, in the order of asking. That frame is done: no stall.
-    pub(super) fn left_answers(&mut self) -> Result<Vec<bool>> {
+    /// Answers to what the last frame asked and did not wait for, in the order of asking; those that it had to wait for before its end, as
+    /// there was no room, come first. That frame is done: no stall.
+    pub(super) fn last_answers(&mut self) -> Result<Vec<bool>> {
         let samples = self.queries.read(0..std::mem::take(&mut self.pending))?;
-        Ok(samples.iter().map(|samples| *samples >= self.least_samples).collect())
-    }
-
-    /// Answers that the last frame had to wait for before its end, as there was no room: those before [`Asking::left_answers`].
-    pub(super) fn waited_answers(&mut self) -> Vec<bool> {
-        std::mem::take(&mut self.answers)
+        let mut answers = std::mem::take(&mut self.answers);
+        answers.extend(samples.iter().map(|samples| *samples >= self.least_samples));
+        Ok(answers)
     }
 
     /// Begins a frame. `nodes` are what boxes are numbers of; without, they are objects'.
@@ -139,7 +137,7 @@ impl Asking {
         &self.tested
     }
 
-    /// Draws some of what was listed, all of one kind of primitive.
+    /// Draws some of what was listed, all in the same way.
     fn draw_part(
         &self,
         f: &mut Frame,

@@ -6,8 +6,10 @@ mod sets;
 pub use cache::{load, save};
 pub use sets::VisibleSets;
 
+use crate::roc::depth_plane;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Placement, Target};
+use glam::DVec3;
 use shaders::types::DrawCommand;
 use shaders::ResourceId;
 use std::sync::Arc;
@@ -64,7 +66,8 @@ impl Method for Reference {
             let objects = range.first as usize..(range.first + range.count) as usize;
             let mut drawn: Vec<usize> = objects.filter(|object| visible.contains(*object)).collect();
             if self.near_to_far {
-                drawn.sort_by(|one, other| begin_of(*one, world, view).total_cmp(&begin_of(*other, world, view)));
+                // Numbers of 0 and more have the order of their bits.
+                drawn.sort_by_cached_key(|object| begin_of(*object, world, view).to_bits());
             }
             for (place, object) in drawn.iter().enumerate() {
                 commands[range.first as usize + place] = self.all[*object];
@@ -87,12 +90,12 @@ impl Method for Reference {
     }
 }
 
-/// Where an object's box begins, metres along the view; 0 where that is no number.
+/// Where an object's box begins, metres along the view; 0 where it reaches the eye, or that is no number.
 fn begin_of(object: usize, world: &World, view: &View) -> f64 {
-    let bounds = world.host_bounds()[object];
-    let forward = view.pose.rotation * glam::DVec3::NEG_Z;
-    let (middle, half) = (bounds.centre() - view.pose.position, (bounds.max - bounds.min) * 0.5);
-    let begin = forward.dot(middle) - forward.abs().dot(half);
+    let [x, y, z, w] = depth_plane(view).map(f64::from);
+    let (bounds, along) = (world.host_bounds()[object], DVec3::new(x, y, z));
+    let middle = along.dot(bounds.centre() - view.pose.position) + w;
+    let begin = middle - along.abs().dot(bounds.half_extent());
     if begin > 0.0 {
         begin
     } else {

@@ -3,9 +3,10 @@
 
 mod texels;
 
+use super::draws::{record, MaybeQueried};
 use super::View;
 use crate::Result;
-use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Queried, Surface, Target};
+use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Surface, Target};
 use scenes::{Scene, Wrap};
 use shaders::draw::{MaskedVertex, ObjectsVertex};
 use shaders::types::{Material, WRAP_BITS, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
@@ -43,49 +44,17 @@ impl Detail {
         (self.object_materials.all(), self.materials.all(), self.texels.all())
     }
 
-    pub(super) fn draw(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+    pub(super) fn draw(&self, f: &mut Frame, (draw, queried): MaybeQueried<'_>, view: &View, target: &Target) {
         let (object_materials, materials, texels) = self.parts();
         let (view, is_cut) = (view.gpu(), draw.surface == Surface::Masked);
-        let draw = self.dressed(draw);
+        let draw = (self.dressed(draw), queried);
         match (is_cut, target.item.is_some()) {
-            (false, false) => f.draw(draw::Textured { object_materials, materials, texels, view }, draw, target),
-            (false, true) => f.draw(draw::TexturedAndItems { object_materials, materials, texels, view }, draw, target),
-            (true, false) => f.draw(draw::Masked { object_materials, materials, texels, view }, draw, target),
-            (true, true) => f.draw(draw::MaskedAndItems { object_materials, materials, texels, view }, draw, target),
-        }
-    }
-
-    /// The same, each command counted by a query: of masked objects, what is left of them.
-    pub(super) fn query(
-        &self,
-        f: &mut Frame,
-        draw: IndexedIndirect,
-        queried: Queried<'_>,
-        view: &View,
-        target: &Target,
-    ) {
-        let (object_materials, materials, texels) = self.parts();
-        let (view, is_cut) = (view.gpu(), draw.surface == Surface::Masked);
-        let draw = self.dressed(draw);
-        match (is_cut, target.item.is_some()) {
-            (false, false) => {
-                f.query_objects(draw::Textured { object_materials, materials, texels, view }, draw, queried, target)
+            (false, false) => record(f, draw::Textured { object_materials, materials, texels, view }, draw, target),
+            (false, true) => {
+                record(f, draw::TexturedAndItems { object_materials, materials, texels, view }, draw, target)
             }
-            (false, true) => f.query_objects(
-                draw::TexturedAndItems { object_materials, materials, texels, view },
-                draw,
-                queried,
-                target,
-            ),
-            (true, false) => {
-                f.query_objects(draw::Masked { object_materials, materials, texels, view }, draw, queried, target)
-            }
-            (true, true) => f.query_objects(
-                draw::MaskedAndItems { object_materials, materials, texels, view },
-                draw,
-                queried,
-                target,
-            ),
+            (true, false) => record(f, draw::Masked { object_materials, materials, texels, view }, draw, target),
+            (true, true) => record(f, draw::MaskedAndItems { object_materials, materials, texels, view }, draw, target),
         }
     }
 
@@ -100,7 +69,7 @@ impl Detail {
         let (object_materials, materials, texels) = self.parts();
         if draw.surface == Surface::Masked {
             // Colour and depth first, then who of them shows: see draw/masked_flags.
-            self.draw(f, draw, view, target);
+            self.draw(f, (draw, None), view, target);
             let stage = draw::MaskedFlags { object_materials, materials, texels, visible, view: view.gpu() };
             let test = Target { strictly_nearer: false, ..target.test_only() };
             f.draw_unshown(stage, self.dressed(draw), &test);
@@ -116,10 +85,10 @@ impl Detail {
     }
 
     /// Masked objects on a target that holds counts.
-    pub(super) fn draw_counted(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+    pub(super) fn draw_counted(&self, f: &mut Frame, (draw, queried): MaybeQueried<'_>, view: &View, target: &Target) {
         let (object_materials, materials, texels) = self.parts();
         let stage = draw::MaskedOverdraw { object_materials, materials, texels, view: view.gpu() };
-        f.draw(stage, self.dressed(draw), target);
+        record(f, stage, (self.dressed(draw), queried), target);
     }
 }
 

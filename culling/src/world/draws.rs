@@ -3,7 +3,7 @@
 use super::{Range, View, World};
 use engine::{Frame, IndexedIndirect, Queried, Surface, Target};
 use shaders::types::DrawCommand;
-use shaders::{draw, BufferRef, Stage};
+use shaders::{draw, BufferRef, GraphicsStage, Stage};
 
 impl World {
     /// The multi-draw of commands for objects of a range: as many as `count` says, or all.
@@ -50,16 +50,32 @@ impl World {
     }
 
     pub(crate) fn draw_indirect(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+        self.draw_or_query(f, (draw, None), view, target);
+    }
+
+    /// The same, each command counted by a query.
+    pub(crate) fn query_indirect(
+        &self,
+        f: &mut Frame,
+        draw: IndexedIndirect,
+        queried: Queried<'_>,
+        view: &View,
+        target: &Target,
+    ) {
+        self.draw_or_query(f, (draw, Some(queried)), view, target);
+    }
+
+    fn draw_or_query(&self, f: &mut Frame, (draw, queried): MaybeQueried<'_>, view: &View, target: &Target) {
         let (draw, target) = self.prepared(draw, target);
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
         if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            self.draw_counted(f, draw, view, &target);
+            self.draw_counted(f, (draw, queried), view, &target);
         } else if let Some(detail) = &self.detail {
-            detail.draw(f, draw, view, &target);
+            detail.draw(f, (draw, queried), view, &target);
         } else if target.item.is_some() {
-            f.draw(draw::ObjectsAndItems { view: view.gpu() }, draw, &target);
+            record(f, draw::ObjectsAndItems { view: view.gpu() }, (draw, queried), &target);
         } else {
-            f.draw(draw::Objects { view: view.gpu() }, draw, &target);
+            record(f, draw::Objects { view: view.gpu() }, (draw, queried), &target);
         }
     }
 
@@ -82,31 +98,10 @@ impl World {
         }
     }
 
-    /// Draws objects, each command counted by a query.
-    pub(crate) fn query_indirect(
-        &self,
-        f: &mut Frame,
-        draw: IndexedIndirect,
-        queried: Queried<'_>,
-        view: &View,
-        target: &Target,
-    ) {
-        let (draw, target) = self.prepared(draw, target);
-        if matches!(target.colour, Some((_, engine::Format::Heat))) {
-            f.query_objects(draw::Overdraw { view: view.gpu() }, draw, queried, &target);
-        } else if let Some(detail) = &self.detail {
-            detail.query(f, draw, queried, view, &target);
-        } else if target.item.is_some() {
-            f.query_objects(draw::ObjectsAndItems { view: view.gpu() }, draw, queried, &target);
-        } else {
-            f.query_objects(draw::Objects { view: view.gpu() }, draw, queried, &target);
-        }
-    }
-
-    fn draw_counted(&self, f: &mut Frame, draw: IndexedIndirect, view: &View, target: &Target) {
+    fn draw_counted(&self, f: &mut Frame, draw: MaybeQueried<'_>, view: &View, target: &Target) {
         match &self.detail {
-            Some(detail) if draw.surface == Surface::Masked => detail.draw_counted(f, draw, view, target),
-            _ => f.draw(draw::Overdraw { view: view.gpu() }, draw, target),
+            Some(detail) if draw.0.surface == Surface::Masked => detail.draw_counted(f, draw, view, target),
+            _ => record(f, draw::Overdraw { view: view.gpu() }, draw, target),
         }
     }
 
@@ -118,5 +113,16 @@ impl World {
             Surface::Opaque | Surface::Masked => *target,
         };
         (IndexedIndirect { vertices: self.vertices.all().into(), ..draw }, target)
+    }
+}
+
+/// A draw, and where the results of its commands' queries go, if they are counted.
+pub(super) type MaybeQueried<'a> = (IndexedIndirect, Option<Queried<'a>>);
+
+/// Draws with a stage.
+pub(super) fn record<S: GraphicsStage>(f: &mut Frame, stage: S, (draw, queried): MaybeQueried<'_>, target: &Target) {
+    match queried {
+        None => f.draw(stage, draw, target),
+        Some(queried) => f.query_objects(stage, draw, queried, target),
     }
 }
