@@ -18,6 +18,7 @@ pub mod pack;
 pub mod queries;
 pub mod reference;
 pub mod roc;
+pub mod seeds;
 pub mod translucent;
 mod tree;
 pub mod warp;

@@ -12,6 +12,7 @@ pub mod hzb;
 pub mod pack;
 pub mod queries;
 pub mod roc;
+pub mod seeds;
 pub mod translucent;
 pub mod types;
 pub mod warp;
@@ -77,6 +78,8 @@ pub const STAGES: &[&StageInfo] = &[
     <roc::SelectBoxes as Stage>::INFO,
     <roc::TestBoxes as Stage>::INFO,
     <roc::TestRange as Stage>::INFO,
+    <seeds::CastRays as Stage>::INFO,
+    <seeds::MarkMet as Stage>::INFO,
     <translucent::SelectBoxes as Stage>::INFO,
     <translucent::WriteCommands as Stage>::INFO,
     <warp::BoundLevels as Stage>::INFO,

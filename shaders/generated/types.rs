@@ -59,6 +59,24 @@ pub const REDUCED_LEVELS: u32 = 3;
 /// The far plane: reversed depth.
 pub const DEPTH_FAR: f32 = 0.0;
 
+/// Bits of a mesh's shape: its box is halved so often, across the longest side of its cells each time.
+pub const SHAPE_HALVINGS: u32 = 12;
+
+/// `SHAPE_WORDS` in GLSL.
+pub const SHAPE_WORDS: u32 = 128;
+
+/// Words of a level's grid: work groups in x, y and z, then how many tiles are listed.
+pub const SEED_GRID_WORDS: u32 = 4;
+
+/// `SEED_MOST_TILES` in GLSL.
+pub const SEED_MOST_TILES: u32 = 8192;
+
+/// Objects that rays wait for are kept in so many places at most; beyond that they are forgotten.
+pub const SEED_STACK: u32 = 48;
+
+/// Nodes a ray looks at, at most: worlds in which more overlap are not worth looking for.
+pub const SEED_VISITS: u32 = 2048;
+
 /// Out of view: nothing.
 pub const SELECT_NONE: u32 = 0;
 
@@ -345,6 +363,25 @@ const _: () = {
     assert!(size_of::<MeshRange>() == 12);
 };
 
+/// The box of a mesh and its cells. Bit x + cells.x (y + cells.y z) of the mesh's SHAPE_WORDS says whether a cell holds triangles.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MeshShape {
+    /// Of its box, in object space.
+    pub low: [f32; 3],
+    /// \> 0 in each axis.
+    pub size: [f32; 3],
+    /// `cells` in GLSL.
+    pub cells: [u32; 3],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MeshShape, low) == 0);
+    assert!(std::mem::offset_of!(MeshShape, size) == 12);
+    assert!(std::mem::offset_of!(MeshShape, cells) == 24);
+    assert!(size_of::<MeshShape>() == 36);
+};
+
 /// The least and the greatest motions of a region, by axis, in texels; empty if low exceeds high. The axes are those of
 /// warp/orient_axes: some direction and, a quarter turn on, the one across.
 #[repr(C)]
@@ -440,6 +477,68 @@ pub struct Reprojection {
 const _: () = {
     assert!(std::mem::offset_of!(Reprojection, clip_from_last) == 0);
     assert!(size_of::<Reprojection>() == 64);
+};
+
+/// A node of the tree. Children lie side by side. Positions are relative to the tree's own origin.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SeedNode {
+    /// `low` in GLSL.
+    pub low: [f32; 3],
+    /// Child, or the object of a leaf.
+    pub first: u32,
+    /// `high` in GLSL.
+    pub high: [f32; 3],
+    /// `is_leaf` in GLSL.
+    pub is_leaf: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(SeedNode, low) == 0);
+    assert!(std::mem::offset_of!(SeedNode, first) == 12);
+    assert!(std::mem::offset_of!(SeedNode, high) == 16);
+    assert!(std::mem::offset_of!(SeedNode, is_leaf) == 28);
+    assert!(size_of::<SeedNode>() == 32);
+};
+
+/// A picture's rays: origin\[0\] + x origin\[1\] + y origin\[2\] and likewise for directions, x and y in -1..1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SeedView {
+    /// `camera_high` in GLSL.
+    pub camera_high: [f32; 3],
+    /// `camera_low` in GLSL.
+    pub camera_low: [f32; 3],
+    /// The camera, seen from the tree's origin.
+    pub tree_from_camera: [f32; 3],
+    /// Relative to the camera.
+    pub origin: [[f32; 3]; 3],
+    /// `direction` in GLSL.
+    pub direction: [[f32; 3]; 3],
+    /// `width_px` in GLSL.
+    pub width_px: u32,
+    /// `height_px` in GLSL.
+    pub height_px: u32,
+    /// Tiles are not cut any further.
+    pub finest_px: u32,
+    /// Of objects, metres.
+    pub usual_size: f32,
+    /// How wide a unit is on the screen where a ray's parameter is 1.
+    pub px_per_unit: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(SeedView, camera_high) == 0);
+    assert!(std::mem::offset_of!(SeedView, camera_low) == 12);
+    assert!(std::mem::offset_of!(SeedView, tree_from_camera) == 24);
+    assert!(std::mem::offset_of!(SeedView, origin) == 36);
+    assert!(std::mem::offset_of!(SeedView, direction) == 72);
+    assert!(std::mem::offset_of!(SeedView, width_px) == 108);
+    assert!(std::mem::offset_of!(SeedView, height_px) == 112);
+    assert!(std::mem::offset_of!(SeedView, finest_px) == 116);
+    assert!(std::mem::offset_of!(SeedView, usual_size) == 120);
+    assert!(std::mem::offset_of!(SeedView, px_per_unit) == 124);
+    assert!(size_of::<SeedView>() == 128);
 };
 
 /// What a frame's steps look through: more than push constants hold.

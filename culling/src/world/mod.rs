@@ -18,6 +18,7 @@ pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};
 
+use crate::seeds::shape::Shapes;
 use crate::Result;
 use blocks::Blocks;
 use detail::Detail;
@@ -99,7 +100,7 @@ struct Host {
     solid_moves: Vec<usize>,
     meshes: Vec<MeshRange>,
     indices: Vec<u32>,
-    static_objects: Vec<Object>,
+    objects: Vec<Object>,
     flags: Vec<u32>,
     transforms: Vec<(u32, DAffine3)>,
     move_count: u32,
@@ -166,7 +167,7 @@ impl World {
                 meshes: flat.meshes,
                 indices: flat.indices,
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
-                static_objects: if moving == 0 { Vec::new() } else { flat.objects },
+                objects: flat.objects,
                 transforms,
                 move_count: 0,
                 seconds: None,
@@ -230,8 +231,8 @@ impl World {
             .map(|(scene_object, transform)| {
                 let index = host.object_of_scene[*scene_object as usize];
                 let mesh = host.scene_meshes[index as usize];
-                let still = host.static_objects[index as usize];
-                let object = Object { colour: still.colour, ..upload::object(transform, still.colour) };
+                let object = upload::object(transform, host.objects[index as usize].colour);
+                host.objects[index as usize] = object;
                 host.boxes[index as usize] = host.bounds.of(mesh, transform);
                 let bounds = upload::bounds(&host.boxes[index as usize], transform, host.flags[index as usize]);
                 MovedObject { index, object, bounds }
@@ -357,6 +358,21 @@ impl World {
     /// How a translucent object is drawn, as a range of none.
     pub(crate) fn translucent_kind(&self, object: u32) -> Range {
         self.host.translucent_kinds[object as usize - self.host.solid]
+    }
+
+    /// Transforms and colours by object, as they are on the device once [`World::update`] has run.
+    pub fn host_objects(&self) -> &[Object] {
+        &self.host.objects
+    }
+
+    /// The mesh of each object.
+    pub fn host_object_meshes(&self) -> &[u32] {
+        &self.host.object_meshes
+    }
+
+    /// Where in its box each mesh has triangles.
+    pub fn mesh_shapes(&self) -> Result<Shapes> {
+        Ok(Shapes::of(&self.host.meshes, &self.vertices.read()?, &self.host.indices))
     }
 
     /// A command for every object that culling methods see.

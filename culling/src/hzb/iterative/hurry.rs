@@ -29,6 +29,11 @@ impl Hurry {
         Hurry { fixed: fixed.map(|ranges| ranges.clamp(1, MOST_STEP_RANGES)), extent, last: None }
     }
 
+    /// The number of ranges that was asked for.
+    pub fn fixed(&self) -> Option<u32> {
+        self.fixed
+    }
+
     /// Ranges of the next frame, 1 to [`MOST_STEP_RANGES`]. Call once a frame.
     pub fn ranges(&mut self, view: &View) -> u32 {
         let new = self.new_share(view);

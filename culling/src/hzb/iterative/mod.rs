@@ -19,18 +19,20 @@ pub mod twin;
 use super::Pyramid;
 use crate::eovc::filter_occluders;
 use crate::roc::depth_plane;
+use crate::seeds::{Seeds, RAYS_OPTION};
 use crate::world::Still;
 use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
 use shaders::types::MOST_STEP_RANGES;
-use shaders::{eovc, hzb, Stage};
+use shaders::{eovc, hzb, seeds, Stage};
 use steps::{Step, Steps};
 
 /// How many ranges, how they are cut, and how finely boxes are tested.
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
     crate::world::DETAIL_OPTION,
+    RAYS_OPTION,
     OptionInfo {
         name: "ranges",
         default: "auto",
@@ -87,6 +89,7 @@ struct Iterative {
     /// Who was seen, by object. What is drawn is added at once: a step that looked at it looks at no object of its ranges again.
     seen: Buffer<u32>,
     steps: Steps,
+    seeds: Option<Seeds>,
     pyramid: Option<Pyramid>,
     hurry: Hurry,
     finest: u32,
@@ -109,6 +112,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         gpu: gpu.clone(),
         seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
         steps: Steps::new(gpu, world, options)?,
+        seeds: Seeds::new(gpu, world, options)?,
         pyramid: None,
         hurry: Hurry::new(options.text("ranges").parse().ok(), world),
         finest: options.number("finest"),
@@ -137,12 +141,19 @@ impl Method for Iterative {
         // What was seen before a cut is no better than the rest.
         self.afresh |= self.hurry.is_cut(view);
         self.ranges = self.hurry.ranges(view);
-        self.first_step = if self.afresh { 1 } else { 0 };
+        let hurries = self.afresh || self.ranges > 1;
+        let seeds = self.seeds.as_mut().filter(|_| hurries);
+        self.ranges = if seeds.is_some() { self.hurry.fixed().unwrap_or(1) } else { self.ranges };
+        self.first_step = if self.afresh && seeds.is_none() { 1 } else { 0 };
         self.until_filtering = if filters { self.every - 1 } else { self.until_filtering - 1 };
         self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
 
         if self.afresh {
             f.fill("hzb/forget_seen", &self.seen, 0);
+        }
+        match seeds {
+            Some(seeds) => seeds.cast(f, world, view, self.seen.all())?, // 1. what stands in front, where the last frame does not tell
+            None => f.skip(seeds::MarkMet::INFO.name, "the last frame tells"),
         }
         self.steps.measure(f, world, self.ranges); // 1. where each block of objects lies along the view
         for number in self.first_step..=self.ranges {

@@ -1,0 +1,161 @@
+//! What stands in front, roughly, where no last frame tells: a ray through each tile of the picture, down a hierarchy of boxes to the cells
+//! of meshes that hold triangles. What is met first is drawn first, and all else is tested against it, as the EOVC thesis finds by rays
+//! what may show (III.4). Nothing depends on a ray but what is drawn early: who is met in vain is drawn in vain, who is missed is tested.
+//!
+//! Tiles in which a usual object, or the one that is met, is smaller than the tile are quartered, level by level: rays are dense where
+//! objects are, far down the street.
+
+mod device;
+mod host;
+pub mod shape;
+pub mod twin;
+
+use crate::world::{split, View, World};
+use crate::{Error, OptionInfo, Options, Result};
+use device::DeviceRays;
+use engine::{DeviceKind, Frame, Gpu};
+use glam::DVec3;
+use host::HostRays;
+use scenes::bvh::{BadBounds, Bvh, BvhOptions, Split, REBUILD_FACTOR};
+use shaders::types::{SeedNode, SeedView};
+use shaders::BufferRef;
+
+/// Who casts rays.
+pub const RAYS_OPTION: OptionInfo = OptionInfo {
+    name: "rays",
+    default: "auto",
+    values: "auto|host|device|off",
+    help: "who looks for what stands in front when the last frame does not tell: the device if it is a GPU, else the host, which casts \
+           more of them in the same time",
+};
+
+/// Tiles of the first level, pixels a side.
+const COARSEST_PX: u32 = 32;
+/// Tiles of the last.
+const FINEST_PX: u32 = 4;
+/// Levels of tiles.
+const LEVELS: u32 = (COARSEST_PX / FINEST_PX).ilog2() + 1;
+
+/// Rays over a world's objects.
+pub struct Seeds {
+    bvh: Bvh,
+    /// What positions in the hierarchy's nodes are relative to.
+    origin: DVec3,
+    usual_size: f32,
+    revision: u64,
+    rays: Rays,
+}
+
+enum Rays {
+    Host(HostRays),
+    Device(DeviceRays),
+}
+
+impl Seeds {
+    /// A hierarchy over the objects as they are now, and the shapes of their meshes; none if rays are off or there is nothing to meet.
+    ///
+    /// # Errors
+    /// A device without room for it.
+    pub fn new(gpu: &Gpu, world: &World, options: &Options) -> Result<Option<Self>> {
+        let on_host = match options.text(RAYS_OPTION.name) {
+            "off" => return Ok(None),
+            "host" => true,
+            "device" => false,
+            _ => gpu.info().is_none_or(|info| info.kind == DeviceKind::Cpu),
+        };
+        let bvh = build(world)?;
+        let Some(root) = bvh.nodes().first() else { return Ok(None) };
+        let origin = root.bounds.centre();
+        let nodes = flatten(&bvh, origin);
+        let shapes = world.mesh_shapes()?;
+        let rays = match on_host {
+            true => Rays::Host(HostRays::new(gpu, world, nodes, shapes)?),
+            false => Rays::Device(DeviceRays::new(gpu, &nodes, &shapes)?),
+        };
+        Ok(Some(Seeds { bvh, origin, usual_size: usual_size(world), revision: world.revision(), rays }))
+    }
+
+    /// Marks in `seen`, by object, what rays meet first.
+    pub fn cast(&mut self, f: &mut Frame, world: &World, view: &View, seen: BufferRef<u32>) -> Result<()> {
+        if self.revision != world.revision() {
+            self.revision = world.revision();
+            self.follow(world)?;
+        }
+        let view = self.view(view);
+        match &mut self.rays {
+            Rays::Host(rays) => rays.cast(f, world, &view, seen),
+            Rays::Device(rays) => rays.cast(f, world, &view, seen),
+        }
+    }
+
+    /// Objects have moved: boxes follow, and the hierarchy is built anew once it has become too costly to go down.
+    fn follow(&mut self, world: &World) -> Result<()> {
+        if self.bvh.refit(world.host_bounds()).is_err() || self.bvh.needs_rebuild(REBUILD_FACTOR) {
+            let bvh = build(world)?;
+            // The same objects have bounds as before, or the tree would not fit its buffers.
+            if bvh.nodes().len() == self.bvh.nodes().len() {
+                self.bvh = bvh;
+            }
+        }
+        let nodes = flatten(&self.bvh, self.origin);
+        match &mut self.rays {
+            Rays::Host(rays) => rays.follow(nodes),
+            Rays::Device(rays) => rays.follow(&nodes)?,
+        }
+        Ok(())
+    }
+
+    fn view(&self, view: &View) -> SeedView {
+        let rays = crate::boxes::box_view(view);
+        let (camera_high, camera_low) = split(view.pose.position);
+        let [width_px, height_px] = view.size;
+        // From one edge of the picture to the other a ray's point at 1 goes along this twice.
+        let across = |vectors: [[f32; 3]; 3]| glam::Vec3::from(vectors[1]).length();
+        let half_width = across(rays.direction).max(across(rays.origin));
+        SeedView {
+            camera_high,
+            camera_low,
+            tree_from_camera: (view.pose.position - self.origin).as_vec3().to_array(),
+            origin: rays.origin,
+            direction: rays.direction,
+            width_px,
+            height_px,
+            finest_px: FINEST_PX,
+            usual_size: self.usual_size,
+            px_per_unit: 0.5 * width_px as f32 / half_width,
+        }
+    }
+}
+
+fn build(world: &World) -> Result<Bvh> {
+    let options = BvhOptions { split: Split::Sah, bad_bounds: BadBounds::SetAside };
+    Bvh::build_with(world.host_bounds(), options).map_err(|error| Error::Missing {
+        method: "hzb-iterative",
+        needs: format!("bounds it can build a hierarchy over: {error}"),
+    })
+}
+
+fn flatten(bvh: &Bvh, origin: DVec3) -> Vec<SeedNode> {
+    let node = |node: &scenes::bvh::Node| SeedNode {
+        low: (node.bounds.min - origin).as_vec3().to_array(),
+        high: (node.bounds.max - origin).as_vec3().to_array(),
+        first: node.first_child_or_object,
+        is_leaf: u32::from(node.is_leaf()),
+    };
+    bvh.nodes().iter().map(node).collect()
+}
+
+/// How large objects are, metres: the median of the middle side of their boxes.
+fn usual_size(world: &World) -> f32 {
+    let middle_side = |bounds: &scenes::Aabb| {
+        let mut sides = (bounds.max - bounds.min).to_array();
+        sides.sort_by(f64::total_cmp);
+        sides[1]
+    };
+    let mut sizes: Vec<f64> = world.host_bounds().iter().map(middle_side).filter(|size| size.is_finite()).collect();
+    let middle = sizes.len() / 2;
+    match sizes.is_empty() {
+        true => 0.0,
+        false => *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 as f32,
+    }
+}
