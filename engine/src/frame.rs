@@ -76,6 +76,8 @@ pub struct Frame {
     timer: Option<TimerMode>,
     first_submit: Option<Instant>,
     host_since: Instant,
+    /// What the host did for the frame before the device got any of it, milliseconds.
+    before_submit_ms: f64,
 }
 
 impl Frame {
@@ -94,6 +96,7 @@ impl Frame {
             timer: Some(gpu.timer_mode()).filter(|mode| *mode != TimerMode::Off),
             first_submit: None,
             host_since: Instant::now(),
+            before_submit_ms: 0.0,
         }
     }
 
@@ -297,7 +300,7 @@ impl Frame {
         self.report.host_ms += self.host_since.elapsed().as_secs_f64() * 1e3;
         let started = *self.first_submit.get_or_insert_with(Instant::now);
         let done = vulkan.run(lowered.commands);
-        self.report.frame_ms = started.elapsed().as_secs_f64() * 1e3;
+        self.report.frame_ms = self.before_submit_ms + started.elapsed().as_secs_f64() * 1e3;
         self.host_since = Instant::now();
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
@@ -319,6 +322,21 @@ impl Frame {
     /// stages themselves is a row of its own, `frame/read_back`, so that the stall shows.
     pub fn read<T: Pod>(&mut self, buffer: &Buffer<T>) -> Result<Vec<T>> {
         self.stalled("frame/read_back", |_| buffer.read())
+    }
+
+    /// Does on the host what a stage would do on the device: a row of its own, and part of the frame's time, as the device has nothing to
+    /// do meanwhile.
+    pub fn on_host<T>(&mut self, label: &str, work: impl FnOnce() -> T) -> T {
+        let since = Instant::now();
+        let done = work();
+        let ms = since.elapsed().as_secs_f64() * 1e3;
+        if self.first_submit.is_none() {
+            self.before_submit_ms += ms;
+        }
+        if self.timer.is_some() {
+            self.report.stages.push(StageTime { label: self.recorder.label(label), ms });
+        }
+        done
     }
 
     /// Waits for what was recorded and reads something of it; a stall, with a row of its own beside the stages' times.

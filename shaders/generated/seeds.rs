@@ -22,11 +22,11 @@ pub struct CastRays {
     pub views: BufferRef<types::SeedView>,
     /// `seen` in GLSL.
     pub seen: BufferRef<u32>,
-    /// The corners of the tiles of this level, x in the lower half; of level 0 all are cast.
+    /// The corners of the tiles of this level, x in the lower half. Not used by level 0: that has all tiles of the picture.
     pub tiles: BufferRef<u32>,
     /// Those of the next level.
     pub finer: BufferRef<u32>,
-    /// `grids` in GLSL.
+    /// SEED_GRID_WORDS a level.
     pub grids: BufferRef<u32>,
     /// `filled` in GLSL.
     pub filled: BufferRef<u32>,

@@ -68,8 +68,8 @@ pub const SHAPE_WORDS: u32 = 128;
 /// Words of a level's grid: work groups in x, y and z, then how many tiles are listed.
 pub const SEED_GRID_WORDS: u32 = 4;
 
-/// `SEED_MOST_TILES` in GLSL.
-pub const SEED_MOST_TILES: u32 = 8192;
+/// A finer level of more tiles than this is not cast: such a crowd costs more rays than it hides.
+pub const SEED_MOST_TILES: u32 = 16384;
 
 /// Objects that rays wait for are kept in so many places at most; beyond that they are forgotten.
 pub const SEED_STACK: u32 = 48;

@@ -1,16 +1,16 @@
 //! Rays cast by the host, on all its cores, and what they meet handed to the device.
 
 use super::shape::Shapes;
-use super::twin::{all_tiles, cast_rays, Cast, Targets};
+use super::twin::{all_tiles, cast_rays, Cast, Level, Targets};
 use super::{COARSEST_PX, LEVELS};
 use crate::world::World;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, Placement};
 use glam::UVec2;
-use shaders::types::{SeedNode, SeedView};
+use shaders::types::{SeedNode, SeedView, SEED_MOST_TILES};
 use shaders::{seeds, BufferRef};
 
-/// More objects than this are not handed over: those that were met by the coarsest rays go first.
+/// More objects than this are not handed over; those that the coarsest rays have met come first.
 const MOST_MET: usize = 65_536;
 /// Rays that are worth a thread.
 const THREAD_RAYS: usize = 256;
@@ -19,15 +19,14 @@ pub(super) struct HostRays {
     nodes: Vec<SeedNode>,
     shapes: Shapes,
     met: Buffer<u32>,
-    /// Number of the last cast that met each object.
-    last_met: Vec<u32>,
-    casts: u32,
+    /// By object: 1 for what the cast has met.
+    known: Vec<u32>,
 }
 
 impl HostRays {
     pub fn new(gpu: &Gpu, world: &World, nodes: Vec<SeedNode>, shapes: Shapes) -> Result<Self> {
         let met = Buffer::new(gpu, "seeds.met", world.len().min(MOST_MET), Placement::Upload)?;
-        Ok(HostRays { nodes, shapes, met, last_met: vec![0; world.len()], casts: 0 })
+        Ok(HostRays { nodes, shapes, met, known: vec![0; world.len()] })
     }
 
     pub fn follow(&mut self, nodes: Vec<SeedNode>) {
@@ -50,19 +49,23 @@ impl HostRays {
             object_meshes: world.host_object_meshes(),
             objects: world.host_objects(),
         };
-        self.casts += 1;
+        self.known.fill(0);
         let mut met = Vec::new();
         let mut tiles = all_tiles(view, COARSEST_PX);
-        for level in 0..LEVELS {
-            let tile_px = COARSEST_PX >> level;
-            let cast = on_all_cores(&tiles, |tiles| cast_rays(&targets, view, tiles, tile_px));
+        for number in 0..LEVELS {
+            let level = Level { number, tile_px: COARSEST_PX >> number };
+            let known = &self.known;
+            let cast = on_all_cores(&tiles, |tiles| cast_rays(&targets, view, tiles, level, known));
             for object in cast.met {
-                let last = std::mem::replace(&mut self.last_met[object as usize], self.casts);
-                if last != self.casts && met.len() < MOST_MET {
+                let known = std::mem::replace(&mut self.known[object as usize], 1);
+                if known == 0 && met.len() < MOST_MET {
                     met.push(object);
                 }
             }
             tiles = cast.finer;
+            if tiles.len() > SEED_MOST_TILES as usize {
+                break;
+            }
         }
         met
     }

@@ -2,8 +2,9 @@
 //! of meshes that hold triangles. What is met first is drawn first, and all else is tested against it, as the EOVC thesis finds by rays
 //! what may show (III.4). Nothing depends on a ray but what is drawn early: who is met in vain is drawn in vain, who is missed is tested.
 //!
-//! Tiles in which a usual object, or the one that is met, is smaller than the tile are quartered, level by level: rays are dense where
-//! objects are, far down the street.
+//! A tile is quartered if what its ray meets had not been met by a larger one and, or a usual object so far away, is smaller than the tile:
+//! rays are dense where many objects are seen, far down the street. Without both conditions there were three times as many rays, which met
+//! little more.
 
 mod device;
 mod host;
@@ -18,7 +19,7 @@ use glam::DVec3;
 use host::HostRays;
 use scenes::bvh::{BadBounds, Bvh, BvhOptions, Split, REBUILD_FACTOR};
 use shaders::types::{SeedNode, SeedView};
-use shaders::BufferRef;
+use shaders::{seeds, BufferRef, Stage};
 
 /// Who casts rays.
 pub const RAYS_OPTION: OptionInfo = OptionInfo {
@@ -86,6 +87,15 @@ impl Seeds {
             Rays::Host(rays) => rays.cast(f, world, &view, seen),
             Rays::Device(rays) => rays.cast(f, world, &view, seen),
         }
+    }
+
+    /// Notes that rays need not be cast.
+    pub fn skip(&self, f: &mut Frame, reason: &'static str) {
+        let stage = match self.rays {
+            Rays::Host(_) => seeds::MarkMet::INFO,
+            Rays::Device(_) => seeds::CastRays::INFO,
+        };
+        f.skip(stage.name, reason);
     }
 
     /// Objects have moved: boxes follow, and the hierarchy is built anew once it has become too costly to go down.

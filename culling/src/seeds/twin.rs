@@ -16,6 +16,15 @@ pub struct Targets<'a> {
     pub objects: &'a [Object],
 }
 
+/// A level of tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// 0 is the coarsest.
+    pub number: u32,
+    /// Pixels a side.
+    pub tile_px: u32,
+}
+
 /// What comes of a level of rays.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cast {
@@ -41,21 +50,22 @@ pub fn all_tiles(view: &SeedView, tile_px: u32) -> Vec<UVec2> {
     (0..down).flat_map(|y| (0..across).map(move |x| UVec2::new(x, y) * tile_px)).collect()
 }
 
-/// Casts a ray through the middle of each tile of a level.
-pub fn cast_rays(targets: &Targets<'_>, view: &SeedView, tiles: &[UVec2], tile_px: u32) -> Cast {
+/// Casts a ray through the middle of each tile of a level. `known`: by object, not 0 for what coarser levels have met.
+pub fn cast_rays(targets: &Targets<'_>, view: &SeedView, tiles: &[UVec2], level: Level, known: &[u32]) -> Cast {
     let mut cast = Cast::default();
     let Some(root) = targets.nodes.first() else { return cast };
     let mut waiting = Vec::with_capacity(SEED_STACK as usize);
     for corner in tiles {
-        let ray = ray_through(view, corner.as_vec2() + 0.5 * tile_px as f32);
+        let ray = ray_through(view, corner.as_vec2() + 0.5 * level.tile_px as f32);
         let hit = first_hit(targets, view, &ray, &mut waiting);
         cast.met.extend(hit.map(|hit| hit.object));
         // Without a hit it is as far as there is anything.
         let beyond = || through(root.low.into(), root.high.into(), ray.from_tree, ray.inverse).1;
         let (at, across) = hit.map_or_else(|| (beyond(), MISSED), |hit| (hit.at, hit.across));
-        let half_px = tile_px / 2;
-        let is_small = across.min(view.usual_size) * view.px_per_unit < tile_px as f32 * at;
-        if is_small && half_px >= view.finest_px {
+        let half_px = level.tile_px / 2;
+        let is_small = across.min(view.usual_size) * view.px_per_unit < level.tile_px as f32 * at;
+        let is_new = hit.map_or(level.number == 0, |hit| known[hit.object as usize] == 0);
+        if is_small && is_new && half_px >= view.finest_px {
             let parts = (0..4).map(|part| *corner + half_px * UVec2::new(part & 1, part >> 1));
             cast.finer.extend(parts.filter(|part| part.x < view.width_px && part.y < view.height_px));
         }

@@ -38,7 +38,9 @@ struct SeedView {
 
 // Words of a level's grid: work groups in x, y and z, then how many tiles are listed.
 const uint SEED_GRID_WORDS = 4u;
-const uint SEED_MOST_TILES = 8192u;
+
+// A finer level of more tiles than this is not cast: such a crowd costs more rays than it hides.
+const uint SEED_MOST_TILES = 16384u;
 
 // Objects that rays wait for are kept in so many places at most; beyond that they are forgotten.
 const uint SEED_STACK = 48u;

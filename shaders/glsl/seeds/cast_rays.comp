@@ -14,10 +14,11 @@ layout(set = 0, binding = 2, scalar) readonly buffer ObjectMeshes { uint items[]
 layout(set = 0, binding = 3, scalar) readonly buffer Objects { Object items[]; } objects;
 layout(set = 0, binding = 4, scalar) readonly buffer Views { SeedView items[]; } views;
 layout(set = 0, binding = 5, scalar) buffer Seen { uint items[]; } seen;
-// The corners of the tiles of this level, x in the lower half; of level 0 all are cast.
+// The corners of the tiles of this level, x in the lower half. Not used by level 0: that has all tiles of the picture.
 layout(set = 0, binding = 6, scalar) readonly buffer Tiles { uint items[]; } tiles;
 // Those of the next level.
 layout(set = 0, binding = 7, scalar) writeonly buffer Finer { uint items[]; } finer;
+// SEED_GRID_WORDS a level.
 layout(set = 0, binding = 8, scalar) buffer Grids { uint words[]; } grids;
 layout(set = 0, binding = 9, scalar) readonly buffer Filled { uint words[]; } filled;
 layout(push_constant, scalar) uniform Push { uint level; uint tile_px; } push;
@@ -90,25 +91,16 @@ float meets(uint index, Ray ray, float nearest) {
     return MISSED;
 }
 
-void main() {
-    SeedView view = views.items[0];
-    uint index = invocation_index();
-    uint tiles_x = (view.width_px + push.tile_px - 1u) / push.tile_px;
-    uint tiles_y = (view.height_px + push.tile_px - 1u) / push.tile_px;
-    uint listed = grids.words[push.level * SEED_GRID_WORDS + 3u];
-    if (index >= (push.level == 0u ? tiles_x * tiles_y : listed <= SEED_MOST_TILES ? listed : 0u)) return;
-    uint packed = push.level == 0u ? (index % tiles_x) * push.tile_px | (index / tiles_x) * push.tile_px << 16u : tiles.items[index];
-    uvec2 corner = uvec2(packed & 0xffffu, packed >> 16u);
-    vec2 px = vec2(corner) + 0.5 * float(push.tile_px);
-    vec2 at = px / vec2(view.width_px, view.height_px) * 2.0 - 1.0;
-    Ray ray;
-    ray.origin = view.origin[0] + at.x * view.origin[1] + at.y * view.origin[2];
-    ray.direction = view.direction[0] + at.x * view.direction[1] + at.y * view.direction[2];
-    ray.from_tree = ray.origin + view.tree_from_camera;
-    ray.inverse = inverse_of(ray.direction);
-    float nearest = MISSED;
-    uint hit = TREE_NONE;
-    float across = MISSED;
+// What a ray meets first; TREE_NONE for nothing.
+struct Hit {
+    uint object;
+    float at;
+    float across;       // the middle one of the sides of its box
+};
+
+// Goes down the hierarchy, nearer children first: to the next leaf, which all invocations of a subgroup then look at together.
+Hit first_hit(Ray ray) {
+    Hit hit = Hit(TREE_NONE, MISSED, MISSED);
     uint waiting[SEED_STACK];
     float from[SEED_STACK];
     uint count = 1u;
@@ -116,56 +108,89 @@ void main() {
     from[0] = enters(nodes.items[0], ray);
     uint visits = 0u;
     while (count > 0u && visits < SEED_VISITS) {
-        // Down to the next leaf, nearer children first.
         uint leaf = TREE_NONE;
-        uint node;
-        while (count > 0u && leaf == TREE_NONE) {
-            count--;
-            node = waiting[count];
+        while (count > 0u && leaf == TREE_NONE && visits < SEED_VISITS) {
             visits++;
-            if (from[count] < nearest) {
-                uint first = nodes.items[node].first;
-                if (nodes.items[node].is_leaf != 0u) {
-                    leaf = first;
-                } else {
-                    float one = enters(nodes.items[first], ray);
-                    float other = enters(nodes.items[first + 1u], ray);
-                    bool turned = other < one;
-                    float far = max(one, other);
-                    if (far < nearest && count + 1u < SEED_STACK) {
-                        waiting[count] = turned ? first : first + 1u;
-                        from[count] = far;
-                        count++;
-                    }
-                    if (min(one, other) < nearest && count < SEED_STACK) {
-                        waiting[count] = turned ? first + 1u : first;
-                        from[count] = min(one, other);
-                        count++;
-                    }
-                }
+            count--;
+            uint node = waiting[count];
+            if (from[count] >= hit.at) continue;
+            uint first = nodes.items[node].first;
+            if (nodes.items[node].is_leaf != 0u) {
+                leaf = node;
+                continue;
+            }
+            float one = enters(nodes.items[first], ray);
+            float other = enters(nodes.items[first + 1u], ray);
+            uint turned = other < one ? 1u : 0u;
+            float near = min(one, other);
+            float far = max(one, other);
+            if (far < hit.at && count + 1u < SEED_STACK) {
+                waiting[count] = first + 1u - turned;
+                from[count++] = far;
+            }
+            if (near < hit.at && count < SEED_STACK) {
+                waiting[count] = first + turned;
+                from[count++] = near;
             }
         }
-        if (leaf != TREE_NONE) {
-            float found = meets(leaf, ray, nearest);
-            if (found < nearest) {
-                nearest = found;
-                hit = leaf;
-                vec3 size = nodes.items[node].high - nodes.items[node].low;
-                across = max(min(size.x, size.y), min(max(size.x, size.y), size.z));
-            }
+        if (leaf == TREE_NONE) break;
+        SeedNode here = nodes.items[leaf];
+        float at = meets(here.first, ray, hit.at);
+        if (at < hit.at) {
+            vec3 size = here.high - here.low;
+            hit = Hit(here.first, at, max(min(size.x, size.y), min(max(size.x, size.y), size.z)));
         }
     }
-    if (hit != TREE_NONE) seen.items[hit] = 1u;
-    else nearest = through(nodes.items[0].low, nodes.items[0].high, ray.from_tree, ray.inverse).y;
-    uint half_px = push.tile_px / 2u;
-    bool is_small = min(across, view.usual_size) * view.px_per_unit < float(push.tile_px) * nearest;
-    if (!is_small || half_px < view.finest_px) return;
+    return hit;
+}
+
+Ray ray_through(SeedView view, vec2 px) {
+    vec2 at = px / vec2(view.width_px, view.height_px) * 2.0 - 1.0;
+    Ray ray;
+    ray.origin = view.origin[0] + at.x * view.origin[1] + at.y * view.origin[2];
+    ray.direction = view.direction[0] + at.x * view.direction[1] + at.y * view.direction[2];
+    ray.from_tree = ray.origin + view.tree_from_camera;
+    ray.inverse = inverse_of(ray.direction);
+    return ray;
+}
+
+// Takes an object for seen. True if no larger tile had met it: rays of a level leave a mark of their own, so that none takes for known
+// what another has just met.
+bool note_hit(uint object) {
+    uint mark = push.level + 2u;
+    uint before = seen.items[object];
+    bool is_new = before == 0u || before == mark;
+    if (is_new) seen.items[object] = mark;
+    return is_new;
+}
+
+void quarter(uvec2 corner, uint half_px) {
     uint header = (push.level + 1u) * SEED_GRID_WORDS;
     for (uint part = 0u; part < 4u; part++) {
         uvec2 own = corner + half_px * uvec2(part & 1u, part >> 1u);
-        if (own.x >= view.width_px || own.y >= view.height_px) continue;
+        if (own.x >= views.items[0].width_px || own.y >= views.items[0].height_px) continue;
         uint place = atomicAdd(grids.words[header + 3u], 1u);
         if (place % 64u == 0u) atomicAdd(grids.words[header], 1u);
         finer.items[place] = own.x | own.y << 16u;
     }
+}
+
+void main() {
+    SeedView view = views.items[0];
+    uint index = invocation_index();
+    uint tiles_x = (view.width_px + push.tile_px - 1u) / push.tile_px;
+    uint tiles_y = (view.height_px + push.tile_px - 1u) / push.tile_px;
+    uint listed = grids.words[push.level * SEED_GRID_WORDS + 3u];
+    uint tile_count = push.level == 0u ? tiles_x * tiles_y : listed > SEED_MOST_TILES ? 0u : listed;
+    if (index >= tile_count) return;
+    uvec2 corner = uvec2(index % tiles_x, index / tiles_x) * push.tile_px;
+    if (push.level > 0u) corner = uvec2(tiles.items[index] & 0xffffu, tiles.items[index] >> 16u);
+    Ray ray = ray_through(view, vec2(corner) + 0.5 * float(push.tile_px));
+    Hit hit = first_hit(ray);
+    bool is_new = push.level == 0u;
+    if (hit.object != TREE_NONE) is_new = note_hit(hit.object);
+    // Without a hit it is as far as there is anything.
+    else hit.at = through(nodes.items[0].low, nodes.items[0].high, ray.from_tree, ray.inverse).y;
+    bool is_small = min(hit.across, view.usual_size) * view.px_per_unit < float(push.tile_px) * hit.at;
+    if (is_small && is_new && push.tile_px / 2u >= view.finest_px) quarter(corner, push.tile_px / 2u);
 }

@@ -6,7 +6,9 @@
 //! k - 1, against the farthest-depth pyramid of all that was drawn in the steps before: what was seen runs one range ahead, so that r
 //! ranges take r pyramids. With one range this is `hzb` with tested blocks.
 //!
-//! - r follows from how far the view has changed since the last frame (see [`hurry`]): known before the frame, so nothing is read back.
+//! - How far the view has changed since the last frame is known before the frame (see [`hurry`]). Where it is far, rays find what stands in
+//!   front (see [`crate::seeds`]); that counts as seen. What they miss lies in gaps between it, so that one range will do.
+//! - Without rays r follows from the same change.
 //! - Blocks of objects are tested before their objects, and a block once hidden is hidden for the rest of the frame.
 //! - Who counts as seen is found out every few frames from the item buffer, as the EOVC thesis filters occluders (III.6.2): exactly who owns
 //!   a pixel, in any order of drawing. In between, what is newly drawn is added: it passed the tests, so that it would be drawn again.
@@ -25,7 +27,7 @@ use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
 use shaders::types::MOST_STEP_RANGES;
-use shaders::{eovc, hzb, seeds, Stage};
+use shaders::{eovc, hzb, Stage};
 use steps::{Step, Steps};
 
 /// How many ranges, how they are cut, and how finely boxes are tested.
@@ -80,6 +82,9 @@ pub const OPTIONS: &[OptionInfo] = &[
 /// Frames of an unchanged view after which the lists hold: what is hidden leaves the list of what was seen one frame after it is drawn,
 /// and what it had let through may leave in the next two.
 const SETTLED_AFTER: u32 = 4;
+
+/// Rays tell more than the last frame where more of the picture than this is new.
+const STALE_SHARE: f64 = 0.5;
 
 /// Parts of the frame by step.
 const PARTS: [&str; MOST_STEP_RANGES as usize + 1] = ["step 0", "step 1", "step 2", "step 3", "step 4", "step 5"];
@@ -139,39 +144,42 @@ impl Method for Iterative {
         }
         let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, self.finest)?;
         // What was seen before a cut is no better than the rest.
-        self.afresh |= self.hurry.is_cut(view);
+        self.afresh |= self.hurry.is_cut(view) || (self.seeds.is_some() && self.hurry.new_share(view) > STALE_SHARE);
         self.ranges = self.hurry.ranges(view);
-        let hurries = self.afresh || self.ranges > 1;
-        let seeds = self.seeds.as_mut().filter(|_| hurries);
-        self.ranges = if seeds.is_some() { self.hurry.fixed().unwrap_or(1) } else { self.ranges };
-        self.first_step = if self.afresh && seeds.is_none() { 1 } else { 0 };
+        // Where the last frame tells little, rays tell of what stands in front, and then one range will do.
+        let casts = self.seeds.is_some() && (self.afresh || self.ranges > 1);
+        if casts {
+            self.ranges = self.hurry.fixed().unwrap_or(1);
+        }
+        self.first_step = if self.afresh && !casts { 1 } else { 0 };
         self.until_filtering = if filters { self.every - 1 } else { self.until_filtering - 1 };
         self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
 
         if self.afresh {
             f.fill("hzb/forget_seen", &self.seen, 0);
         }
-        match seeds {
-            Some(seeds) => seeds.cast(f, world, view, self.seen.all())?, // 1. what stands in front, where the last frame does not tell
-            None => f.skip(seeds::MarkMet::INFO.name, "the last frame tells"),
+        match &mut self.seeds {
+            Some(seeds) if casts => seeds.cast(f, world, view, self.seen.all())?, // 1. what stands in front counts as seen
+            Some(seeds) => seeds.skip(f, "the last frame tells"),
+            None => {}
         }
-        self.steps.measure(f, world, self.ranges); // 1. where each block of objects lies along the view
+        self.steps.measure(f, world, self.ranges); // 2. where each block of objects lies along the view
         for number in self.first_step..=self.ranges {
             f.part(PARTS[number as usize]);
             let behind = number > self.first_step;
             if behind {
                 match number - self.first_step {
-                    1 => pyramid.reduce(f, target), // 2. farthest depth of all drawn so far
+                    1 => pyramid.reduce(f, target), // 3. farthest depth of all drawn so far
                     _ => pyramid.reduce_if(f, target, self.steps.reductions()), // if the last step drew anything
                 }
             }
             let step = Step { number, behind, seen: self.seen.all() };
-            self.steps.find(f, world, pyramid, &step); // 3. what is due and not hidden: seen of this range, unseen of the one before
-            self.steps.test_boxes(f, world, &step, target); // 4. of what was not seen, only what shows by its box
-            self.steps.draw(f, world, &step, view, target); // 5. draw it, and go on to the next range
+            self.steps.find(f, world, pyramid, &step); // 4. what is due and not hidden: seen of this range, unseen of the one before
+            self.steps.test_boxes(f, world, &step, target); // 5. of what was not seen, only what shows by its box
+            self.steps.draw(f, world, &step, view, target); // 6. draw it, and go on to the next range
         }
         f.part("");
-        self.filter(f, filters, target)?; // 6. every few frames: who owns a pixel
+        self.filter(f, filters, target)?; // 7. every few frames: who owns a pixel
         self.afresh = false;
         Ok(())
     }
@@ -222,6 +230,9 @@ impl Iterative {
         ];
         stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
         Pyramid::skip(f, Still::REASON);
+        if let Some(seeds) = &self.seeds {
+            seeds.skip(f, Still::REASON);
+        }
         let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };
         for number in self.first_step..=last_step {
             f.part(PARTS[number as usize]);
