@@ -2,7 +2,9 @@
 
 mod drawn;
 
-pub use drawn::{what_a_wall_hides_is_culled, what_is_no_longer_seen_is_no_longer_drawn};
+pub use drawn::{
+    what_a_wall_hides_after_a_cut_is_culled, what_a_wall_hides_is_culled, what_is_no_longer_seen_is_no_longer_drawn,
+};
 
 use crate::lab::{error_of, Lab, Subject, Take};
 use crate::{Case, Random};

@@ -1,5 +1,7 @@
 //! The laws of `hzb-iterative`, its stages against their twins, and what depth ranges promise.
 
+#[path = "method_hzb_iterative/seeds.rs"]
+mod seeds;
 #[path = "method_hzb_iterative/stages.rs"]
 mod stages;
 
@@ -7,13 +9,14 @@ harness::exact_method_tests!("hzb-iterative");
 harness::skipping_method_tests!("hzb-iterative");
 
 /// Settings unlike the default; they take turns at the worlds.
-const SETTINGS: [&[(&str, &str)]; 6] = [
+const SETTINGS: [&[(&str, &str)]; 7] = [
     &[("ranges", "1")],
-    &[("ranges", "2"), ("boxes", "false"), ("finest", "2")],
-    &[("ranges", "3"), ("factor", "16"), ("small", "0")],
-    &[("ranges", "5"), ("every", "1"), ("finest", "1")],
-    &[("ranges", "5"), ("small", "0"), ("texels", "2")],
-    &[("ranges", "1"), ("small", "0"), ("every", "64")],
+    &[("ranges", "2"), ("boxes", "false"), ("finest", "2"), ("rays", "off")],
+    &[("ranges", "3"), ("factor", "16"), ("small", "0"), ("rays", "device")],
+    &[("ranges", "5"), ("every", "1"), ("finest", "1"), ("rays", "off")],
+    &[("ranges", "5"), ("small", "0"), ("texels", "2"), ("rays", "off")],
+    &[("ranges", "1"), ("small", "0"), ("every", "64"), ("rays", "device")],
+    &[("rays", "off")],
 ];
 
 fn setting(set: &[(&str, &str)]) -> Subject {

@@ -82,7 +82,7 @@ impl Seeds {
             self.revision = world.revision();
             self.follow(world)?;
         }
-        let view = self.view(view);
+        let view = view_of(view, self.origin, self.usual_size);
         match &mut self.rays {
             Rays::Host(rays) => rays.cast(f, world, &view, seen),
             Rays::Device(rays) => rays.cast(f, world, &view, seen),
@@ -114,26 +114,27 @@ impl Seeds {
         }
         Ok(())
     }
+}
 
-    fn view(&self, view: &View) -> SeedView {
-        let rays = crate::boxes::box_view(view);
-        let (camera_high, camera_low) = split(view.pose.position);
-        let [width_px, height_px] = view.size;
-        // From one edge of the picture to the other a ray's point at 1 goes along this twice.
-        let across = |vectors: [[f32; 3]; 3]| glam::Vec3::from(vectors[1]).length();
-        let half_width = across(rays.direction).max(across(rays.origin));
-        SeedView {
-            camera_high,
-            camera_low,
-            tree_from_camera: (view.pose.position - self.origin).as_vec3().to_array(),
-            origin: rays.origin,
-            direction: rays.direction,
-            width_px,
-            height_px,
-            finest_px: FINEST_PX,
-            usual_size: self.usual_size,
-            px_per_unit: 0.5 * width_px as f32 / half_width,
-        }
+/// A frame's view as rays take it; `origin`: what positions in the tree are relative to.
+fn view_of(view: &View, origin: DVec3, usual_size: f32) -> SeedView {
+    let rays = crate::boxes::box_view(view);
+    let (camera_high, camera_low) = split(view.pose.position);
+    let [width_px, height_px] = view.size;
+    // From one edge of the picture to the other a ray's point at 1 goes along this twice.
+    let across = |vectors: [[f32; 3]; 3]| glam::Vec3::from(vectors[1]).length();
+    let half_width = across(rays.direction).max(across(rays.origin));
+    SeedView {
+        camera_high,
+        camera_low,
+        tree_from_camera: (view.pose.position - origin).as_vec3().to_array(),
+        origin: rays.origin,
+        direction: rays.direction,
+        width_px,
+        height_px,
+        finest_px: FINEST_PX,
+        usual_size,
+        px_per_unit: 0.5 * width_px as f32 / half_width,
     }
 }
 

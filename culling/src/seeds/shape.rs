@@ -87,3 +87,54 @@ fn touches(corners: [Vec3; 3]) -> bool {
     let across = edges.into_iter().flat_map(|edge| Vec3::AXES.map(|axis| axis.cross(edge)));
     !std::iter::once(normal).chain(across).any(parts)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_filled(shape: &MeshShape, filled: &[u32], position: Vec3) -> bool {
+        let cells = UVec3::from(shape.cells);
+        let cell = (position - Vec3::from(shape.low)) / Vec3::from(shape.size) * cells.as_vec3();
+        let cell = cell.floor().clamp(Vec3::ZERO, cells.as_vec3() - 1.0).as_uvec3();
+        let bit = cell.x + cells.x * (cell.y + cells.y * cell.z);
+        filled[bit as usize / 32] >> (bit % 32) & 1 != 0
+    }
+
+    fn share(filled: &[u32]) -> f64 {
+        f64::from(filled.iter().map(|word| word.count_ones()).sum::<u32>()) / f64::from(1u32 << SHAPE_HALVINGS)
+    }
+
+    #[test]
+    fn where_a_triangle_is_its_cell_is_filled_and_little_else() {
+        let triangle = [Vec3::new(-3.0, 0.1, 2.0), Vec3::new(5.0, 1.7, 2.5), Vec3::new(0.3, 6.0, -4.0)];
+        let (shape, filled) = shape_of(&triangle);
+        for step in 0..2000 {
+            let (a, b) = ((step % 50) as f32 / 49.0, (step / 50) as f32 / 39.0);
+            let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+            let position = triangle[0] + a * (triangle[1] - triangle[0]) + b * (triangle[2] - triangle[0]);
+            assert!(is_filled(&shape, &filled, position), "{position}");
+        }
+        assert!(share(&filled) < 0.15, "a triangle fills {} of its box", share(&filled));
+    }
+
+    #[test]
+    fn cells_are_as_long_as_wide() {
+        let long = [Vec3::ZERO, Vec3::new(100.0, 0.0, 0.0), Vec3::new(100.0, 3.0, 3.0)];
+        let (shape, _) = shape_of(&long);
+        let [x, y, z] = [0, 1, 2].map(|axis| shape.size[axis] / shape.cells[axis] as f32);
+        assert!(x.max(y).max(z) <= 2.0 * x.min(y).min(z), "{x} {y} {z}");
+        assert_eq!(shape.cells.iter().product::<u32>(), 1 << SHAPE_HALVINGS);
+    }
+
+    #[test]
+    fn flat_and_empty_meshes_have_shapes() {
+        let flat = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let (shape, filled) = shape_of(&flat);
+        assert!(shape.size.iter().all(|size| *size > 0.0) && is_filled(&shape, &filled, Vec3::new(0.2, 0.2, 0.0)));
+        for nothing in [&[][..], &[Vec3::ZERO; 2], &[Vec3::splat(f32::MAX), Vec3::splat(-f32::MAX), Vec3::ZERO]] {
+            assert_eq!(share(&shape_of(nothing).1), 0.0);
+        }
+        let point = [Vec3::ONE; 3];
+        assert!(shape_of(&point).0.size.iter().all(|size| *size > 0.0));
+    }
+}

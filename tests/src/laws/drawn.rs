@@ -11,15 +11,24 @@ use scenes::{Pose, Shot};
 ///
 /// The quarter is a choice, not derived: far from what the methods reach in [`walled`](crate::worlds::walled) and from drawing all.
 pub fn what_a_wall_hides_is_culled(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
-    let case = case.filmed(vec![case.shots[0]; 4]);
+    // The last frame: its predecessors, with all of the depth, have seen what there is to see.
+    little_is_drawn_in(3, gpu, subject, case)
+}
+
+/// The same of a first frame, before which nothing is known: for methods that find out what stands in front before they draw all else.
+pub fn what_a_wall_hides_after_a_cut_is_culled(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
+    little_is_drawn_in(0, gpu, subject, case)
+}
+
+fn little_is_drawn_in(frame: usize, gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
+    let case = case.filmed(vec![case.shots[0]; frame + 1]);
     let mut lab = Lab::new(gpu, &case);
     let (truths, sets) = lab.truths(&case.shots);
     let hidden = [&Subject::named("frustum"), subject].map(|subject| {
         let mut method = lab.make(subject, &sets);
         let takes = lab.film(&mut *method, &case.shots);
-        // The last frame: its predecessors, with all of the depth, have seen what there is to see.
-        let drawn = takes[3].drawn.objects.iter().filter(|drawn| **drawn).count();
-        drawn.saturating_sub(truths[3].visible_count())
+        let drawn = takes[frame].drawn.objects.iter().filter(|drawn| **drawn).count();
+        drawn.saturating_sub(truths[frame].visible_count())
     });
     let place = format!("{}, {}", subject.options.label(), case.name);
     match hidden {
