@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes glTF import (scenes/fuzz) with libFuzzer: no panic, no overflow, no more than 1 GiB.
-#   tools/fuzz.sh                  a million runs from assimp's test models
+#   tools/fuzz.sh                  a million runs from assimp's test models and scenes/fuzz/seeds
 #   tools/fuzz.sh -runs=10000      arguments go to libFuzzer
 # Needs nightly Rust, cargo-fuzz (`cargo install cargo-fuzz`) and g++. Finds go to scenes/fuzz/artifacts, inputs to scenes/fuzz/corpus.
 set -euo pipefail
@@ -13,6 +13,7 @@ command -v cargo-fuzz >/dev/null || {
 }
 # Small files: mutations of a large one mostly change its vertices.
 mkdir -p fuzz/corpus/import
+cp -n fuzz/seeds/*.gltf fuzz/corpus/import/
 if [[ -d $MODELS ]]; then
     find "$MODELS" \( -name '*.gltf' -o -name '*.glb' \) -size -64k -print0 | while IFS= read -r -d '' model; do
         cp -n "$model" "fuzz/corpus/import/$(sha256sum "$model" | cut -c1-16)"

@@ -31,7 +31,7 @@ pub use methods::{default_method, find, Entry, METHODS};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;
 pub use reference::VisibleSets;
-pub use world::{drawn_objects, Drawn, Shading, View, World};
+pub use world::{draw_lists, drawn_by, drawn_objects, Drawn, Shading, View, World};
 
 /// What culling calls return.
 pub type Result<T> = std::result::Result<T, Error>;

@@ -5,6 +5,7 @@
 use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
+use crate::names::Names;
 use crate::pipeline::{descriptor_type, Pipeline};
 use crate::recorder::{Op, Recorded};
 use crate::Result;
@@ -71,7 +72,7 @@ impl Descriptors {
     }
 
     /// Makes ready for a submission of these steps; those before it must be done.
-    pub(crate) fn begin(&self, device: &ash::Device, ops: &[Recorded]) -> Result<()> {
+    pub(crate) fn begin(&self, device: &ash::Device, names: &Names, ops: &[Recorded]) -> Result<()> {
         let Descriptors::Pooled(pool) = self else { return Ok(()) };
         let mut pool = lock(pool);
         let wanted = Room::of(ops.iter().filter_map(|recorded| stage_of(&recorded.op)));
@@ -83,7 +84,7 @@ impl Descriptors {
             return unsafe { device.reset_descriptor_pool(pool.raw, Default::default()) }
                 .named("vkResetDescriptorPool");
         }
-        let made = Pool::new(device, wanted.doubled())?;
+        let made = Pool::new(device, names, wanted.doubled())?;
         // SAFETY: as above. Null is ignored.
         unsafe { device.destroy_descriptor_pool(pool.raw, None) };
         *pool = made;
@@ -131,7 +132,7 @@ impl Descriptors {
 }
 
 impl Pool {
-    fn new(device: &ash::Device, room: Room) -> Result<Self> {
+    fn new(device: &ash::Device, names: &Names, room: Room) -> Result<Self> {
         let sizes: Vec<_> = KINDS
             .iter()
             .zip(room.descriptors)
@@ -141,6 +142,7 @@ impl Pool {
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(room.sets).pool_sizes(&sizes);
         // SAFETY: the device is alive; the sizes live through the call.
         let raw = unsafe { device.create_descriptor_pool(&info, None) }.named("vkCreateDescriptorPool")?;
+        names.give(raw, "descriptors");
         Ok(Pool { raw, room })
     }
 }
@@ -148,10 +150,11 @@ impl Pool {
 /// The stage of a step that binds resources.
 fn stage_of(op: &Op) -> Option<&BoundStage> {
     match op {
-        Op::Dispatch { stage, .. } | Op::DispatchIndirect { stage, .. } | Op::Draw { stage, .. } => {
-            Some(stage).filter(|stage| !stage.resources.is_empty())
-        }
-        _ => None,
+        Op::Dispatch { stage, .. }
+        | Op::DispatchIndirect { stage, .. }
+        | Op::Draw { stage, .. }
+        | Op::Query { stage, .. } => Some(stage).filter(|stage| !stage.resources.is_empty()),
+        Op::Clear { .. } | Op::Fill { .. } | Op::Copy { .. } | Op::CopyImage { .. } => None,
     }
 }
 

@@ -382,15 +382,4 @@ impl Gpu {
     pub fn frame(&self) -> Frame {
         Frame::new(self)
     }
-
-    /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
-    pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
-        match bound {
-            Bound::Buffer { raw, offset, size, .. } => {
-                let bytes = self.stage_from_buffer(ash::vk::Handle::from_raw(*raw), *offset, *size as usize)?;
-                Ok(bytemuck::pod_collect_to_vec(&bytes[..bytes.len() / size_of::<T>() * size_of::<T>()]))
-            }
-            Bound::Image(_) => Ok(Vec::new()),
-        }
-    }
 }

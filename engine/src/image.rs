@@ -4,6 +4,7 @@ use crate::error::Named;
 use crate::gpu::{Gpu, Vulkan};
 use crate::retired::Retired;
 use crate::target::Format;
+use crate::transfer::Source;
 use crate::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::Allocation;
@@ -60,8 +61,23 @@ impl Image {
     /// Reads the whole image, row by row from the top, now; the device must be idle (between frames). Depth comes as reversed
     /// floats, in whatever format it is kept.
     pub fn read(&self) -> Result<Vec<u8>> {
-        let texels = self.gpu.stage_from_image(self.raw, self.format, self.size)?;
-        Ok(if self.format == Format::Depth { self.gpu.depth().reversed(texels) } else { texels })
+        let [texels] = Self::read_together([self])?;
+        Ok(texels)
+    }
+
+    /// Reads several images of one device as [`Image::read`] does, with one wait for all.
+    pub fn read_together<const N: usize>(images: [&Image; N]) -> Result<[Vec<u8>; N]> {
+        let Some(first) = images.first() else { return Ok(std::array::from_fn(|_| Vec::new())) };
+        let sources = images.map(|image| Source::Image { raw: image.raw, format: image.format, size: image.size });
+        let mut texels = first.gpu.stage_from(&sources)?.into_iter();
+        Ok(images.map(|image| {
+            let texels = texels.next().unwrap_or_default();
+            if image.format == Format::Depth {
+                image.gpu.depth().reversed(texels)
+            } else {
+                texels
+            }
+        }))
     }
 
     /// Writes all pixels of a colour image, row by row from the top, now; the device must be idle (between frames).
@@ -158,7 +174,8 @@ fn check_size(vulkan: &Vulkan, name: &str, size: [u32; 2]) -> Result<()> {
 impl Drop for Image {
     fn drop(&mut self) {
         if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
-            vulkan.retired.push(Retired { buffer: vk::Buffer::null(), image: self.raw, view: self.view, allocation });
+            let (image, view, allocation) = (self.raw, self.view, Some(allocation));
+            vulkan.retired.push(Retired { image, view, allocation, ..Retired::default() });
             vulkan.bury();
         }
     }

@@ -52,7 +52,7 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<
         });
     }
     assert_counts_do_not_lapse(ops);
-    vulkan.descriptors.begin(&vulkan.device, ops)?;
+    vulkan.descriptors.begin(&vulkan.device, &vulkan.names, ops)?;
     let commands = vulkan.begin_commands("frame")?;
     let recording = Recording { vulkan, commands };
     let device = &vulkan.device;
@@ -172,7 +172,7 @@ impl Recording<'_> {
             }
             Op::Draw { stage, draw, target } => self.draw(stage, draw, target)?,
             Op::Query { stage, draw, queries, first_query, target } => {
-                self.query(stage, draw, (queries, *first_query), target)?;
+                self.query(stage, draw, (*queries, *first_query), target)?;
             }
             Op::Clear { target } => self.rendering(target, vk::AttachmentLoadOp::CLEAR, || ()),
             Op::Fill { buffer, value } => {

@@ -207,12 +207,7 @@ fn create(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) -> Resu
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         if let (Some(vulkan), Some(allocation)) = (&self.gpu.0.vulkan, self.allocation.take()) {
-            vulkan.retired.push(Retired {
-                buffer: self.raw,
-                image: vk::Image::null(),
-                view: vk::ImageView::null(),
-                allocation,
-            });
+            vulkan.retired.push(Retired { buffer: self.raw, allocation: Some(allocation), ..Retired::default() });
             vulkan.bury();
         }
     }

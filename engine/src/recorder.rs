@@ -1,7 +1,6 @@
 //! What a frame is before it becomes Vulkan: a list of stages with barriers between them. Plain data, readable as text.
 
 use crate::barriers::{Barrier, BarrierTracker, Point, Use};
-use crate::frame::OcclusionQueries;
 use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
@@ -66,6 +65,13 @@ pub struct IndexedIndirect {
     pub surface: Surface,
 }
 
+/// A pool of occlusion queries, as steps name it. Like buffers, it lives on while a frame that can name it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueriesRef {
+    /// The driver's handle.
+    pub raw: u64,
+}
+
 /// One recorded step.
 #[derive(Clone, Debug)]
 pub enum Op {
@@ -99,7 +105,7 @@ pub enum Op {
         /// What is drawn; without a count.
         draw: IndexedIndirect,
         /// Where the counts go.
-        queries: OcclusionQueries,
+        queries: QueriesRef,
         /// The query of the first command.
         first_query: u32,
         /// What it is drawn to.

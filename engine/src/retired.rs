@@ -5,12 +5,14 @@ use ash::vk;
 use gpu_allocator::vulkan::{Allocation, Allocator};
 use std::sync::Mutex;
 
-/// What was dropped but may still be named by a recorded frame.
+/// What was dropped but may still be named by a recorded frame. Null handles stand for what it does not have.
+#[derive(Default)]
 pub(crate) struct Retired {
     pub(crate) buffer: vk::Buffer,
     pub(crate) image: vk::Image,
     pub(crate) view: vk::ImageView,
-    pub(crate) allocation: Allocation,
+    pub(crate) queries: vk::QueryPool,
+    pub(crate) allocation: Option<Allocation>,
 }
 
 impl Retired {
@@ -21,9 +23,11 @@ impl Retired {
             device.destroy_image_view(self.view, None);
             device.destroy_image(self.image, None);
             device.destroy_buffer(self.buffer, None);
+            device.destroy_query_pool(self.queries, None);
         }
-        let bytes = self.allocation.size();
-        if let Err(error) = lock(allocator).free(self.allocation) {
+        let Some(allocation) = self.allocation else { return 0 };
+        let bytes = allocation.size();
+        if let Err(error) = lock(allocator).free(allocation) {
             tracing::warn!(%error, "freeing device memory");
         }
         bytes

@@ -6,8 +6,11 @@ use crate::lock::lock;
 use crate::target::Format;
 use crate::{Error, Result};
 use ash::vk;
+use bytemuck::Pod;
 use gpu_allocator::vulkan::Allocation;
 use gpu_allocator::MemoryLocation;
+use shaders::Bound;
+use vk::Handle;
 
 /// Staging is done in pieces of this size, so that a large scene does not need twice its memory.
 const PIECE_BYTES: usize = 32 << 20;
@@ -57,6 +60,23 @@ impl Drop for Staging<'_> {
 }
 
 impl Gpu {
+    /// Reads what a bound buffer range holds, now; the device must be idle (between frames) and the buffer alive.
+    pub fn read_bound<T: Pod>(&self, bound: &Bound) -> Result<Vec<T>> {
+        let bytes = self.read_bound_bytes(std::slice::from_ref(bound))?.remove(0);
+        Ok(bytemuck::pod_collect_to_vec(&bytes[..bytes.len() / size_of::<T>() * size_of::<T>()]))
+    }
+
+    /// Reads several ranges as [`Gpu::read_bound`] does, with one wait for all; images are read elsewhere and come out empty.
+    pub fn read_bound_bytes(&self, bounds: &[Bound]) -> Result<Vec<Vec<u8>>> {
+        let source = |bound: &Bound| match bound {
+            Bound::Buffer { raw, offset, size, .. } => {
+                Source::Buffer { raw: vk::Buffer::from_raw(*raw), offset: *offset, bytes: *size as usize }
+            }
+            Bound::Image(_) => Source::Buffer { raw: vk::Buffer::null(), offset: 0, bytes: 0 },
+        };
+        self.stage_from(&bounds.iter().map(source).collect::<Vec<_>>())
+    }
+
     pub(crate) fn stage_to_buffer(&self, to: vk::Buffer, bytes: &[u8]) -> Result<()> {
         let vulkan = self.vulkan()?;
         let mut staging = Staging::new(vulkan, bytes.len().min(PIECE_BYTES), MemoryLocation::CpuToGpu)?;
@@ -71,16 +91,31 @@ impl Gpu {
         Ok(())
     }
 
-    pub(crate) fn stage_from_buffer(&self, from: vk::Buffer, src_offset: u64, bytes: usize) -> Result<Vec<u8>> {
-        if bytes == 0 {
-            return Ok(Vec::new());
-        }
+    pub(crate) fn stage_from_buffer(&self, raw: vk::Buffer, offset: u64, bytes: usize) -> Result<Vec<u8>> {
+        Ok(self.stage_from(&[Source::Buffer { raw, offset, bytes }])?.remove(0))
+    }
+
+    /// Copies all of them back in one submission: each submission waits, and costs more than a small copy.
+    pub(crate) fn stage_from(&self, sources: &[Source]) -> Result<Vec<Vec<u8>>> {
         let vulkan = self.vulkan()?;
-        let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
-        let (to, region) = (staging.raw, vk::BufferCopy { src_offset, dst_offset: 0, size: bytes as u64 });
-        // SAFETY: as above.
-        vulkan.run_once(|device, commands| unsafe { device.cmd_copy_buffer(commands, from, to, &[region]) })?;
-        Ok(staging.bytes()?[..bytes].to_vec())
+        let lengths: Vec<usize> = sources.iter().map(|source| source.bytes(vulkan)).collect();
+        let starts: Vec<usize> = lengths
+            .iter()
+            .scan(0usize, |end, bytes| Some(std::mem::replace(end, *end + bytes.next_multiple_of(ALIGNED_BYTES))))
+            .collect();
+        let total: usize = lengths.iter().map(|bytes| bytes.next_multiple_of(ALIGNED_BYTES)).sum();
+        if total == 0 {
+            return Ok(vec![Vec::new(); sources.len()]);
+        }
+        let mut staging = Staging::new(vulkan, total, MemoryLocation::GpuToCpu)?;
+        let to = staging.raw;
+        vulkan.run_once(|device, commands| {
+            for (source, start) in sources.iter().zip(&starts) {
+                source.copy(device, commands, to, *start as u64);
+            }
+        })?;
+        let staged = staging.bytes()?;
+        Ok(starts.iter().zip(&lengths).map(|(start, bytes)| staged[*start..start + bytes].to_vec()).collect())
     }
 
     pub(crate) fn stage_to_image(&self, to: vk::Image, format: Format, size: [u32; 2], bytes: &[u8]) -> Result<()> {
@@ -93,18 +128,42 @@ impl Gpu {
             unsafe { device.cmd_copy_buffer_to_image(commands, from, to, vk::ImageLayout::GENERAL, &[region]) };
         })
     }
+}
 
-    pub(crate) fn stage_from_image(&self, from: vk::Image, format: Format, size: [u32; 2]) -> Result<Vec<u8>> {
-        let vulkan = self.vulkan()?;
-        let bytes = size[0] as usize * size[1] as usize * format.texel_bytes(vulkan.depth);
-        let mut staging = Staging::new(vulkan, bytes, MemoryLocation::GpuToCpu)?;
-        let to = staging.raw;
-        let region = whole_image(format, size);
-        vulkan.run_once(|device, commands| {
-            // SAFETY: the image is in the general layout and alive through the wait; the buffer has room for it.
-            unsafe { device.cmd_copy_image_to_buffer(commands, from, vk::ImageLayout::GENERAL, to, &[region]) };
-        })?;
-        Ok(staging.bytes()?[..bytes].to_vec())
+/// Where copies begin in a shared buffer: a multiple of all texels' sizes.
+const ALIGNED_BYTES: usize = 16;
+
+/// What is copied back to the host.
+pub(crate) enum Source {
+    Buffer { raw: vk::Buffer, offset: u64, bytes: usize },
+    Image { raw: vk::Image, format: Format, size: [u32; 2] },
+}
+
+impl Source {
+    fn bytes(&self, vulkan: &Vulkan) -> usize {
+        match self {
+            Source::Buffer { bytes, .. } => *bytes,
+            Source::Image { format, size, .. } => {
+                size[0] as usize * size[1] as usize * format.texel_bytes(vulkan.depth)
+            }
+        }
+    }
+
+    /// Records the copy to a buffer that has room for it from `start` on.
+    fn copy(&self, device: &ash::Device, commands: vk::CommandBuffer, to: vk::Buffer, start: u64) {
+        match *self {
+            Source::Buffer { bytes: 0, .. } => {}
+            Source::Buffer { raw, offset, bytes } => {
+                let region = [vk::BufferCopy { src_offset: offset, dst_offset: start, size: bytes as u64 }];
+                // SAFETY: both buffers are alive through the wait and the region lies in both.
+                unsafe { device.cmd_copy_buffer(commands, raw, to, &region) };
+            }
+            Source::Image { raw, format, size } => {
+                let region = [whole_image(format, size).buffer_offset(start)];
+                // SAFETY: the image is in the general layout and alive through the wait; the buffer has room for it.
+                unsafe { device.cmd_copy_image_to_buffer(commands, raw, vk::ImageLayout::GENERAL, to, &region) };
+            }
+        }
     }
 }
 

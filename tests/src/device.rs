@@ -1,17 +1,25 @@
-//! One device for all tests of a process, with validation on, used by one test at a time.
+//! Devices for the tests of a process, with validation on, each used by one test at a time.
 
 use engine::{Gpu, GpuOptions};
 use std::ops::Deref;
-use std::sync::{Mutex, MutexGuard, OnceLock};
+use std::sync::{Condvar, Mutex, MutexGuard};
 
-static GPU: OnceLock<Gpu> = OnceLock::new();
-static TURN: Mutex<()> = Mutex::new(());
+/// Most devices at once: each keeps pipelines and memory of its own. Most of a test is recording and validation, on one thread.
+const MOST: usize = 4;
 
-/// The device while it is this test's turn. Tests take turns because validation messages belong to the device and not to
-/// a test, and because frames of one device share a command pool.
+/// Devices that no test uses now, and how many there are in all. They stay open: opening one takes longer than most tests.
+struct Devices {
+    idle: Vec<&'static Gpu>,
+    opened: usize,
+}
+
+static DEVICES: Mutex<Devices> = Mutex::new(Devices { idle: Vec::new(), opened: 0 });
+static GIVEN_BACK: Condvar = Condvar::new();
+
+/// A device while it is this test's turn. Tests do not share one at a time, because validation messages belong to the device and not
+/// to a test, and because frames of one device share a command pool.
 pub struct Device {
     gpu: &'static Gpu,
-    _turn: MutexGuard<'static, ()>,
 }
 
 /// How tests open devices: validation on; `SIGHTLINE_TEST_DEVICE` is an index or a part of the name, and "any" leaves the
@@ -24,21 +32,40 @@ pub fn options() -> GpuOptions {
     GpuOptions { device, validation: true, without, ..GpuOptions::default() }
 }
 
-/// The device, when other tests of this process are done with it. Ask once a test: a second call in one test waits forever.
+/// A device that no other test of this process uses. Ask once a test: tests that hold some and wait for more could wait forever.
 ///
 /// # Panics
 /// Without a device: a test never passes because there is none.
 pub fn gpu() -> Device {
-    // A test that failed leaves nothing half-done behind on the device: frames wait until they are finished.
-    let turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let gpu = GPU.get_or_init(|| match Gpu::open(&options()) {
-        Ok(gpu) => gpu,
+    let at_once = std::thread::available_parallelism().map_or(1, usize::from).min(MOST);
+    let mut devices = lock();
+    loop {
+        if let Some(gpu) = devices.idle.pop() {
+            let _ = gpu.take_messages();
+            return Device { gpu };
+        }
+        if devices.opened < at_once {
+            // Opened under the lock: its self-check times stages, and tests that begin meanwhile would wait anyway.
+            let gpu = opened();
+            devices.opened += 1;
+            return Device { gpu };
+        }
+        devices = GIVEN_BACK.wait(devices).unwrap_or_else(|poisoned| poisoned.into_inner());
+    }
+}
+
+/// A test that failed leaves nothing half-done behind: frames wait until they are finished, and the list changes in single steps.
+fn lock() -> MutexGuard<'static, Devices> {
+    DEVICES.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+fn opened() -> &'static Gpu {
+    match Gpu::open(&options()) {
+        Ok(gpu) => Box::leak(Box::new(gpu)),
         Err(error) => {
             panic!("tests need a Vulkan device with validation layers: {error} (tools/setup.sh installs lavapipe)")
         }
-    });
-    let _ = gpu.take_messages();
-    Device { gpu, _turn: turn }
+    }
 }
 
 impl Deref for Device {
@@ -52,8 +79,10 @@ impl Deref for Device {
 impl Drop for Device {
     /// Messages outside frames, of making pipelines and resources, fail the test too.
     fn drop(&mut self) {
+        let messages = self.gpu.take_messages();
+        lock().idle.push(self.gpu);
+        GIVEN_BACK.notify_one();
         if !std::thread::panicking() {
-            let messages = self.gpu.take_messages();
             assert!(messages.is_empty(), "the validation layer said: {messages:#?}");
         }
     }

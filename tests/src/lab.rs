@@ -59,6 +59,14 @@ impl Lab {
         good(self.0.truths(shots))
     }
 
+    /// The visible sets of shots, for a method that draws by them; empty for all others, which never look at them.
+    pub fn sets_for(&mut self, subject: &Subject, shots: &[Shot]) -> Arc<VisibleSets> {
+        match subject.options.method() {
+            "ref" => self.truths(shots).1,
+            _ => Arc::default(),
+        }
+    }
+
     /// Makes a method for this world.
     pub fn make(&self, subject: &Subject, visible: &Arc<VisibleSets>) -> Box<dyn Method> {
         good(self.0.make(subject, visible))

@@ -41,7 +41,7 @@ pub fn skipping_changes_no_pixel(gpu: &Gpu, subject: &Subject, case: &Case) -> V
     const STILL: usize = 5;
     let shots: Vec<_> = case.shots.iter().flat_map(|shot| [*shot; STILL]).collect();
     let mut lab = Lab::new(gpu, case);
-    let (_, sets) = lab.truths(&shots);
+    let sets = lab.sets_for(subject, &shots);
     let mut skipping = lab.make(&subject.clone().with("skip", "true"), &sets);
     let mut thorough = lab.make(&subject.clone().with("skip", "false"), &sets);
     let mut faults = Vec::new();
@@ -109,7 +109,7 @@ pub fn the_order_of_objects_does_not_matter(gpu: &Gpu, subject: &Subject, case: 
     shuffled.scene.objects = order.iter().map(|from| case.scene.objects[*from].clone()).collect();
     let film = |case: &Case| {
         let mut lab = Lab::new(gpu, case);
-        let (_, sets) = lab.truths(&case.shots);
+        let sets = lab.sets_for(subject, &case.shots);
         let mut method = lab.make(subject, &sets);
         (
             lab.film(&mut *method, &case.shots),
@@ -208,7 +208,7 @@ fn film_differences(place: &str, one: &[Take], other: &[Take]) -> Vec<String> {
 pub fn two_runs_give_the_same_bytes(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let film = || {
         let mut lab = Lab::new(gpu, case);
-        let (_, sets) = lab.truths(&case.shots);
+        let sets = lab.sets_for(subject, &case.shots);
         let mut method = lab.make(subject, &sets);
         lab.film(&mut *method, &case.shots)
     };
@@ -218,7 +218,7 @@ pub fn two_runs_give_the_same_bytes(gpu: &Gpu, subject: &Subject, case: &Case) -
 /// The draw lists, colours and depths of timed frames are those of measured ones.
 pub fn decisions_do_not_depend_on_the_pass(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let mut lab = Lab::new(gpu, case);
-    let (_, sets) = lab.truths(&case.shots);
+    let sets = lab.sets_for(subject, &case.shots);
     let (mut measured, mut timed) = (lab.make(subject, &sets), lab.make(subject, &sets));
     let mut faults = Vec::new();
     for (frame, shot) in case.shots.iter().enumerate() {
@@ -235,7 +235,7 @@ pub fn decisions_do_not_depend_on_the_pass(gpu: &Gpu, subject: &Subject, case: &
 pub fn a_still_camera_shows_one_picture(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     let shots = [case.shots[0]; 5];
     let mut lab = Lab::new(gpu, case);
-    let (_, sets) = lab.truths(&shots);
+    let sets = lab.sets_for(subject, &shots);
     let mut method = lab.make(subject, &sets);
     let takes = lab.film(&mut *method, &shots);
     let pairs = takes[1..].windows(2).enumerate();

@@ -106,7 +106,7 @@ fn what_is_beyond_the_last_range_is_drawn_only_if_told_so() {
 
 fn film(gpu: &Gpu, subject: &Subject, case: &Case, shots: &[Shot]) -> Vec<Take> {
     let mut lab = Lab::new(gpu, case);
-    let (_, sets) = lab.truths(shots);
+    let sets = lab.sets_for(subject, shots);
     let mut method = lab.make(subject, &sets);
     lab.film(&mut *method, shots)
 }

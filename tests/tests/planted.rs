@@ -7,7 +7,7 @@ use engine::{Buffer, Error, Faces, Frame, Gpu, IndexedIndirect, Placement, Primi
 use harness::footprints::covered;
 use harness::{assert_caught, assert_none, gpu, laws, worlds, Lab, Subject};
 use shaders::types::{Bounds, DrawCommand, PyramidLevel, BLOCK_OBJECTS};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::cell::Cell;
 
 /// What is wrong with a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,10 @@ enum Defect {
     FirstOfEachBlock,
 }
 
-static INSTANCES: AtomicU32 = AtomicU32::new(0);
+thread_local! {
+    /// Made so far by this test: others run beside it.
+    static INSTANCES: Cell<u32> = const { Cell::new(0) };
+}
 
 struct Broken {
     defect: Defect,
@@ -64,7 +67,7 @@ fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
         gpu: gpu.clone(),
         skip: setup.options.flag("skip"),
         frames: 0,
-        instance: INSTANCES.fetch_add(1, Ordering::Relaxed),
+        instance: INSTANCES.replace(INSTANCES.get() + 1),
         commands: Buffer::with_data(gpu, "broken.commands", &commands, Placement::Storage)?,
         reversed: Buffer::with_data(gpu, "broken.reversed", &reversed, Placement::Storage)?,
         shrunk: Buffer::with_data(gpu, "broken.shrunk", &shrunk, Placement::Storage)?,

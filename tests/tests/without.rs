@@ -1,8 +1,12 @@
 //! Each feature that a device may lack, turned off: the laws hold, pictures and draw lists are the same, and what cannot be measured
 //! is left out. And `engine/clear_tail` against its twin.
 
+use culling::boxes::BoxShape;
 use culling::{DrawList, Drawn, View, World};
-use engine::{Buffer, Error, Extra, FrameReport, Gpu, GpuOptions, IndexedIndirect, Placement, TimerMode};
+use engine::{
+    Buffer, Error, Extra, FrameReport, Gpu, GpuOptions, IndexedIndirect, OcclusionQueries, Placement, Queried,
+    TimerMode,
+};
 use harness::{assert_caught, assert_none, gpu, laws, options, worlds, Case, Lab, Random, Subject};
 use shaders::types::DrawCommand;
 use sightline::run::targets::Targets;
@@ -65,7 +69,7 @@ fn no_feature_changes_a_picture_or_a_list() {
     let turn = gpu();
     let film = |gpu: &Gpu, subject: &Subject, case: &Case| {
         let mut lab = Lab::new(gpu, case);
-        let (_, sets) = lab.truths(&case.shots);
+        let sets = lab.sets_for(subject, &case.shots);
         let mut method = lab.make(subject, &sets);
         let takes = lab.film(&mut *method, &case.shots);
         takes.into_iter().map(|take| (take.images, take.drawn, take.commands)).collect::<Vec<_>>()
@@ -181,6 +185,30 @@ fn a_tail_that_is_not_cleared_is_noticed() {
         report.draws.iter().map(|draw| IndexedIndirect { count: None, ..*draw }).collect::<Vec<_>>()
     };
     assert_caught(&unlisted(&gpu, uncounted).0, "is not listed");
+}
+
+/// A submission of queried boxes alone had no room for their descriptors: steps that query were not counted.
+#[test]
+fn queries_alone_have_room_for_what_they_bind() {
+    let _turn = gpu();
+    let gpu = open(Extra::PushDescriptor);
+    let case = worlds::walled(20);
+    let world = World::new(&gpu, &case.scene).unwrap();
+    let targets = Targets::new(&gpu, case.size).unwrap();
+    let mut shape = BoxShape::new(&gpu, "test", 1).unwrap();
+    shape.look(&View::new(&case.shots[0], case.size, 0, gpu.snap_px())).unwrap();
+    let commands = [DrawCommand { instance_count: 1, ..BoxShape::no_boxes(0) }];
+    let commands = Buffer::with_data(&gpu, "test.commands", &commands, Placement::Upload).unwrap();
+    let listed = Buffer::with_data(&gpu, "test.listed", &[0], Placement::Upload).unwrap();
+    let queries = OcclusionQueries::new(&gpu, "test.queries", 1).unwrap();
+    let target = targets.timed();
+    let mut f = gpu.frame();
+    f.clear(&target);
+    let stage = shaders::queries::TestObjects { bounds: world.bounds(), listed: listed.all(), views: shape.view() };
+    let draw = IndexedIndirect { count: None, ..shape.draw(commands.all(), 1) };
+    f.query_boxes(stage, draw, Queried { queries: &queries, first: 0 }, &target.test_only());
+    assert!(f.wait_for_queries(&queries, 0..1).unwrap()[0] > 0, "the wall's box shows");
+    f.finish().unwrap();
 }
 
 /// A work group of several subgroups, and one that a subgroup is too wide for: what a device makes of it that takes no size.

@@ -12,7 +12,7 @@ mod upload;
 mod view;
 
 pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
-pub use drawn::{drawn_objects, Drawn};
+pub use drawn::{draw_lists, drawn_by, drawn_objects, Drawn};
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;

@@ -4,22 +4,18 @@ use super::Frame;
 use crate::error::Named;
 use crate::features::Extra;
 use crate::gpu::Gpu;
-use crate::recorder::{IndexedIndirect, Op};
+use crate::recorder::{IndexedIndirect, Op, QueriesRef};
+use crate::retired::Retired;
 use crate::target::Target;
 use crate::Result;
 use ash::vk;
 use shaders::GraphicsStage;
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use vk::Handle;
 
 /// A pool of occlusion queries. Those of a submission are reset by it: a result must be read before its query is used again.
-///
-/// A copy is the same pool: recorded steps keep it alive until they have run.
-#[derive(Clone)]
-pub struct OcclusionQueries(Arc<Pool>);
-
-struct Pool {
+pub struct OcclusionQueries {
     gpu: Gpu,
     raw: vk::QueryPool,
     len: u32,
@@ -27,15 +23,15 @@ struct Pool {
 
 impl fmt::Debug for OcclusionQueries {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{} occlusion queries", self.0.len)
+        write!(out, "{} occlusion queries", self.len)
     }
 }
 
-impl Drop for Pool {
+impl Drop for OcclusionQueries {
     fn drop(&mut self) {
         if let Some(vulkan) = &self.gpu.0.vulkan {
-            // SAFETY: recorded steps hold the pool too, and each submission is waited for: no step that uses it is left.
-            unsafe { vulkan.device.destroy_query_pool(self.raw, None) };
+            vulkan.retired.push(Retired { queries: self.raw, ..Retired::default() });
+            vulkan.bury();
         }
     }
 }
@@ -54,41 +50,37 @@ impl OcclusionQueries {
                 raw
             }
         };
-        Ok(OcclusionQueries(Arc::new(Pool { gpu: gpu.clone(), raw, len })))
+        Ok(OcclusionQueries { gpu: gpu.clone(), raw, len })
     }
 
     /// Queries in the pool.
     pub fn len(&self) -> u32 {
-        self.0.len
+        self.len
     }
 
     /// True if there are none.
     pub fn is_empty(&self) -> bool {
-        self.0.len == 0
+        self.len == 0
     }
 
     /// True if results are numbers of samples. A device without `occlusionQueryPrecise` says only whether there were any: 0, or
     /// something else.
     pub fn counts_samples(&self) -> bool {
-        self.0.gpu.has(Extra::OcclusionQueryPrecise)
-    }
-
-    pub(crate) fn raw(&self) -> vk::QueryPool {
-        self.0.raw
+        self.gpu.has(Extra::OcclusionQueryPrecise)
     }
 
     /// Reads results of a submission that is done: those of the last frame, or, in the middle of one, what
     /// [`Frame::wait_for_queries`] has waited for.
     pub fn read(&self, queries: Range<u32>) -> Result<Vec<u64>> {
-        assert!(queries.end <= self.0.len, "query {} of {}", queries.end, self.0.len);
+        assert!(queries.end <= self.len, "query {} of {}", queries.end, self.len);
         let mut samples = vec![0u64; queries.len()];
         if samples.is_empty() {
             return Ok(samples);
         }
-        let vulkan = self.0.gpu.vulkan()?;
+        let vulkan = self.gpu.vulkan()?;
         // SAFETY: the range lies in the pool. Nothing is waited for: were a query not done, the call would say so.
         unsafe {
-            vulkan.device.get_query_pool_results(self.0.raw, queries.start, &mut samples, vk::QueryResultFlags::TYPE_64)
+            vulkan.device.get_query_pool_results(self.raw, queries.start, &mut samples, vk::QueryResultFlags::TYPE_64)
         }
         .named("vkGetQueryPoolResults")?;
         Ok(samples)
@@ -125,7 +117,8 @@ impl Frame {
         let Queried { queries, first } = queried;
         assert!(draw.count.is_none(), "{}: a queried draw has no count", S::INFO.name);
         assert!(first + draw.max_draws <= queries.len(), "{}: more draws than queries", S::INFO.name);
-        let op = Op::Query { stage: stage.bind(), draw, queries: queries.clone(), first_query: first, target: *to };
+        let named = QueriesRef { raw: queries.raw.as_raw() };
+        let op = Op::Query { stage: stage.bind(), draw, queries: named, first_query: first, target: *to };
         self.recorder.push(S::INFO.name, op);
     }
 

@@ -2,25 +2,26 @@
 
 use super::{range, Recording};
 use crate::features::Extra;
-use crate::frame::OcclusionQueries;
-use crate::recorder::IndexedIndirect;
+use crate::recorder::{IndexedIndirect, QueriesRef};
 use crate::target::Target;
 use crate::Result;
 use ash::vk;
 use shaders::BoundStage;
+use vk::Handle;
 
 impl Recording<'_> {
     pub(super) fn query(
         &self,
         stage: &BoundStage,
         draw: &IndexedIndirect,
-        (queries, first): (&OcclusionQueries, u32),
+        (queries, first): (QueriesRef, u32),
         target: &Target,
     ) -> Result<()> {
         let device = &self.vulkan.device;
+        let pool = vk::QueryPool::from_raw(queries.raw);
         // SAFETY: the range lies in the pool: `Frame::query_boxes` checked it. No rendering is open, and a query that is reset
         // here is not used by what came before in this submission: pools are numbered on between waits.
-        unsafe { device.cmd_reset_query_pool(self.commands, queries.raw(), first, draw.max_draws) };
+        unsafe { device.cmd_reset_query_pool(self.commands, pool, first, draw.max_draws) };
         let precise = match self.vulkan.has(Extra::OcclusionQueryPrecise) {
             true => vk::QueryControlFlags::PRECISE,
             false => vk::QueryControlFlags::empty(),
@@ -31,9 +32,9 @@ impl Recording<'_> {
                 let at = commands_at + u64::from(index * super::COMMAND_BYTES);
                 // SAFETY: inside a rendering with pipeline and buffers bound; begin and end pair up, and the query was reset.
                 unsafe {
-                    device.cmd_begin_query(self.commands, queries.raw(), first + index, precise);
+                    device.cmd_begin_query(self.commands, pool, first + index, precise);
                     device.cmd_draw_indexed_indirect(self.commands, commands, at, 1, super::COMMAND_BYTES);
-                    device.cmd_end_query(self.commands, queries.raw(), first + index);
+                    device.cmd_end_query(self.commands, pool, first + index);
                 }
             }
         })

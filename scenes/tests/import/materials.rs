@@ -26,7 +26,7 @@ fn textured_material() -> Value {
     json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } })
 }
 
-fn png() -> Vec<u8> {
+pub fn png() -> Vec<u8> {
     let picture = RgbaImage::from_fn(3, 2, |x, y| Rgba([x as u8 * 10, y as u8 * 20, 7, 100 * y as u8]));
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
@@ -152,4 +152,19 @@ fn debian_s_textured_models_have_their_textures() {
     });
     assert_eq!(sizes[0].0, [211, 211]);
     assert!(sizes[0] == sizes[1] && sizes[0] == sizes[2], "beside the file, within it, or as text: the same texels");
+}
+
+/// A seed whose material is not read would fuzz nothing of it.
+#[test]
+fn the_fuzzer_s_seeds_are_textured_masked_and_translucent() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/seeds"));
+    for (name, masked, translucent, coloured) in
+        [("textured", false, false, false), ("mask", true, false, true), ("blend", false, true, true)]
+    {
+        let scene = scenes::import(&folder.join(name).with_extension("gltf")).unwrap_or_else(|error| panic!("{error}"));
+        let object = &scene.objects[0];
+        assert_eq!((object.masked, object.translucent), (masked, translucent), "{name}");
+        assert_eq!(scene.textures[object.surface.texture.expect("a texture") as usize].size, [4, 4], "{name}");
+        assert_eq!(!scene.meshes[0].colours.is_empty(), coloured, "{name}");
+    }
 }

@@ -1,5 +1,6 @@
 //! The law that nothing in a file makes the import panic.
 
+use crate::materials::png;
 use crate::model::{import, Model, U16};
 use proptest::prelude::*;
 use serde_json::json;
@@ -10,6 +11,8 @@ fn rich() -> Model {
     let indices = model.accessor(&[0, 0, 1, 0, 2, 0], U16, "SCALAR", 3);
     let deltas = model.floats("VEC3", &[0.5; 9]);
     let (at, value) = (model.view(&[1]), model.view(&[0; 12]));
+    let model_coordinates = model.floats("VEC2", &[0.0, 0.0, 1.0, 0.0, 0.25, 0.75]);
+    let model_colours = model.floats("VEC4", &[0.5; 12]);
     model.json["accessors"][deltas]["sparse"] = json!({ "count": 1, "indices": { "bufferView": at, "componentType": 5121 }, "values": { "bufferView": value } });
     let primitive = &mut model.json["meshes"][0]["primitives"][0];
     primitive["indices"] = indices.into();
@@ -17,9 +20,23 @@ fn rich() -> Model {
     primitive["targets"] = json!([{ "POSITION": deltas }]);
     primitive["mode"] = 5.into();
     primitive["material"] = 0.into();
+    primitive["attributes"]["TEXCOORD_0"] = model_coordinates.into();
+    primitive["attributes"]["COLOR_0"] = model_colours.into();
+    let mut glass = primitive.clone();
+    glass["material"] = 1.into();
+    model.json["meshes"][0]["primitives"].as_array_mut().expect("a list").push(glass);
     model.json["meshes"][0]["weights"] = json!([0.5]);
-    model.json["materials"] =
-        json!([{ "alphaMode": "MASK", "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] } }]);
+    let transform = json!({ "offset": [0.5, 0.25], "rotation": 0.5, "scale": [2, 4] });
+    let texture = json!({ "index": 0, "texCoord": 0, "extensions": { "KHR_texture_transform": transform } });
+    model.json["materials"] = json!([
+        { "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+            "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1], "baseColorTexture": texture } },
+        { "alphaMode": "BLEND", "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": texture } },
+    ]);
+    model.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    model.json["samplers"] = json!([{ "wrapS": 33_071, "wrapT": 33_648 }]);
+    let picture = model.view(&png());
+    model.json["images"] = json!([{ "bufferView": picture, "mimeType": "image/png" }]);
     model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
     let places = model.floats("VEC3", &[1., 2., 3., 4., 5., 6.]);
     let instancing = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": places } } });
@@ -46,7 +63,14 @@ fn check(file: &[u8]) {
                 assert_eq!(mesh.positions.len(), mesh.normals.len());
                 assert!(mesh.indices.iter().all(|&index| (index as usize) < mesh.positions.len()));
                 assert!(mesh.positions.iter().chain(&mesh.normals).all(|vector| vector.is_finite()));
+                assert!([0, mesh.positions.len()].contains(&mesh.texture_coordinates.len()));
+                assert!([0, mesh.positions.len()].contains(&mesh.colours.len()));
             }
+            for texture in &scene.textures {
+                assert_eq!(texture.texels.len(), texture.size[0] as usize * texture.size[1] as usize);
+            }
+            let textures = scene.objects.iter().filter_map(|object| object.surface.texture);
+            assert!(textures.into_iter().all(|texture| (texture as usize) < scene.textures.len()));
         }
         Err(error) => assert!(!error.to_string().contains('\n')),
     }
@@ -55,7 +79,11 @@ fn check(file: &[u8]) {
 #[test]
 fn the_file_to_mutate_is_legal() {
     let scene = rich().scene();
-    assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (2, 1, 2));
+    // Two places of a mesh of two materials.
+    assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (4, 1, 4));
+    let count = |of: fn(&scenes::Object) -> bool| scene.objects.iter().filter(|object| of(object)).count();
+    let counts = (count(|o| o.masked), count(|o| o.translucent), count(|o| o.surface.texture.is_some()));
+    assert_eq!(counts, (2, 2, 4), "masked, translucent, textured");
 }
 
 proptest! {

@@ -1,7 +1,11 @@
 //! Buffers and images: zeroed, freed, and refused where they are too large.
 
-use engine::{Buffer, Error, Format, Image, Placement};
-use harness::gpu;
+use culling::boxes::BoxShape;
+use culling::{View, World};
+use engine::{Buffer, Error, Format, Image, IndexedIndirect, OcclusionQueries, Placement, Queried};
+use harness::{gpu, worlds};
+use shaders::types::DrawCommand;
+use sightline::run::targets::Targets;
 
 const PLACEMENTS: [Placement; 4] = [Placement::Storage, Placement::Geometry, Placement::Upload, Placement::ReadBack];
 
@@ -62,6 +66,30 @@ fn a_recorded_frame_keeps_what_it_names_alive() {
     drop(result);
     drop(gpu.frame());
     assert!((gpu.memory_mib() - before).abs() < 0.01, "{} MiB are left of {before}", gpu.memory_mib());
+}
+
+/// The pool goes while a frame that queries is recorded; a layer that saw it destroyed would say so.
+#[test]
+fn a_recorded_frame_keeps_the_queries_that_it_names_alive() {
+    let gpu = gpu();
+    let case = worlds::walled(20);
+    let world = World::new(&gpu, &case.scene).unwrap();
+    let targets = Targets::new(&gpu, case.size).unwrap();
+    let mut shape = BoxShape::new(&gpu, "test", 1).unwrap();
+    shape.look(&View::new(&case.shots[0], case.size, 0, gpu.snap_px())).unwrap();
+    let commands = [DrawCommand { instance_count: 1, ..BoxShape::no_boxes(0) }];
+    let commands = Buffer::with_data(&gpu, "test.commands", &commands, Placement::Upload).unwrap();
+    let listed = Buffer::with_data(&gpu, "test.listed", &[0], Placement::Upload).unwrap();
+    let target = targets.timed();
+    let mut f = gpu.frame();
+    f.clear(&target);
+    {
+        let queries = OcclusionQueries::new(&gpu, "test.queries", 1).unwrap();
+        let stage = shaders::queries::TestObjects { bounds: world.bounds(), listed: listed.all(), views: shape.view() };
+        let draw = IndexedIndirect { count: None, ..shape.draw(commands.all(), 1) };
+        f.query_boxes(stage, draw, Queried { queries: &queries, first: 0 }, &target.test_only());
+    }
+    f.finish().unwrap();
 }
 
 #[test]

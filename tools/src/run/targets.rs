@@ -64,12 +64,13 @@ impl Targets {
     /// Reads all three images of the last frame that had the item buffer on.
     pub fn read(&self) -> Result<FrameImages> {
         let [width, height] = self.colour.size();
+        let [colour, depth, items] = Image::read_together([&self.colour, &self.depth, &self.item])?;
         Ok(FrameImages {
             width,
             height,
-            colour: bytemuck::pod_collect_to_vec(&self.colour.read()?),
-            depth: bytemuck::pod_collect_to_vec(&self.depth.read()?),
-            items: self.read_items()?,
+            colour: bytemuck::pod_collect_to_vec(&colour),
+            depth: bytemuck::pod_collect_to_vec(&depth),
+            items: bytemuck::pod_collect_to_vec(&items),
             seen_through: Vec::new(),
         })
     }

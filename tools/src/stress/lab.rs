@@ -5,7 +5,7 @@ use crate::run::targets::Targets;
 use crate::run::truth::draw_truth;
 use crate::stress::Case;
 use anyhow::{Context, Result};
-use culling::{drawn_objects, Drawn, Entry, Method, Options, Setup, View, VisibleSets, World};
+use culling::{draw_lists, drawn_by, Drawn, Entry, Method, Options, Setup, View, VisibleSets, World};
 use engine::{FrameReport, Gpu};
 use scenes::{Scene, Shot};
 use shaders::types::DrawCommand;
@@ -147,17 +147,9 @@ impl Lab {
     }
 
     fn developed(&self, report: FrameReport, images: FrameImages) -> Result<Take> {
-        let drawn = drawn_objects(&self.gpu, &self.world, &report)?;
-        let mut commands = Vec::new();
-        for draw in &report.draws {
-            let all = self.gpu.read_bound::<DrawCommand>(&draw.commands)?;
-            let count = match draw.count {
-                Some(count) => self.gpu.read_bound::<u32>(&count.into())?[0],
-                None => draw.max_draws,
-            };
-            commands.extend_from_slice(&all[..count as usize]);
-        }
-        Ok(Take { report, images, drawn, commands })
+        let lists = draw_lists(&self.gpu, &report)?;
+        let drawn = drawn_by(&self.world, &report, &lists);
+        Ok(Take { report, images, drawn, commands: lists.concat() })
     }
 }
 
