@@ -23,6 +23,12 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
         bail!("--no-metrics: table {id} shows what is culled or wrong, which needs the truth; leave --no-metrics out");
     }
     let plan = table.plan(&arguments.methods.sets())?;
+    if arguments.samples.samples > 1 && plan.runs.iter().any(|run| !run.warps.is_empty()) {
+        bail!(
+            "--samples {}: table {id} warps depths of one sample a pixel; leave --samples out",
+            arguments.samples.samples
+        );
+    }
     let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
@@ -150,7 +156,7 @@ fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, Session
         if let Some((_, other)) = sessions.iter().find(|(earlier, _)| *earlier == folder) {
             bail!("--scene: {scene} and {} would both be written to the folder {folder}; run them apart", other.scene);
         }
-        let mut session = choice.session_of(scene);
+        let mut session = arguments.samples.of(choice.session_of(scene));
         if session.path.is_none() {
             let (path, whole) = table.path();
             session.path = Some(path.to_owned());
