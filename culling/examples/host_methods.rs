@@ -51,8 +51,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let view = View::new(&shot, SIZE, frame, gpu.snap_px());
             // Some methods look at who owns which pixel, every few frames.
             let item = method.needs_items(&world, &view).then(|| items.view());
-            let target =
-                Target { size: SIZE, colour: shown, item, depth, depth_read_only: false, strictly_nearer: false };
+            let target = Target {
+                size: SIZE,
+                colour: shown,
+                item,
+                depth,
+                depth_read_only: false,
+                strictly_nearer: false,
+                samples: None,
+            };
             let mut f = gpu.frame();
             method.frame(&mut f, &world, &view, &target)?;
             let report = f.finish()?;

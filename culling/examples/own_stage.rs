@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         depth: depth.view(),
         depth_read_only: false,
         strictly_nearer: false,
+        samples: None,
     };
     let options = find("frustum")?.default_options();
     let mut method = (find("frustum")?.make)(&Setup { gpu: &gpu, world: &world, options: &options, visible: None })?;

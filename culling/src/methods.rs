@@ -1,7 +1,7 @@
 //! The list of methods. One line a method.
 
 use crate::{auto, eovc, farthest, frustum, hzb, none, queries, reference, roc, woc};
-use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup};
+use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup, World};
 
 /// A method that can be chosen.
 #[derive(Debug)]
@@ -18,6 +18,22 @@ pub struct Entry {
     pub options: &'static [OptionInfo],
     /// Makes it.
     pub make: fn(&Setup<'_>) -> Result<Box<dyn Method>>,
+}
+
+impl Entry {
+    /// Why it cannot draw pictures of several samples a pixel of a world; none if it can.
+    pub fn needs_one_sample(&self, world: &World) -> Option<&'static str> {
+        match self.id {
+            "eovc" => Some("it casts one ray through each pixel's centre"),
+            "hzb-iterative" => Some("it learns who is seen from the item buffer, which has one object a pixel"),
+            "auto" => Some("it chooses among methods that need one sample; name a method"),
+            "woc" | "awoc" | "woc-exact" if world.moving().len() > 0 => {
+                Some("it warps moving objects by the item buffer, which has one object a pixel")
+            }
+            _ if world.has_masked() => Some("masked objects are drawn with one sample a pixel"),
+            _ => None,
+        }
+    }
 }
 
 /// Every method, in the order in which `--method all` runs them.

@@ -53,6 +53,8 @@ pub struct AdapterInfo {
     pub subgroup_size: u32,
     /// The grid that vertex positions are snapped to, pixels.
     pub snap_px: f32,
+    /// Numbers of samples that colours and depths of a picture may have, a bit each.
+    pub(crate) samples: vk::SampleCountFlags,
     /// Nanoseconds a timestamp tick; 0 if there are no timestamps.
     pub timestamp_ns: f32,
     /// Bits of a timestamp before it starts again at 0; 0 if there are no timestamps.
@@ -208,6 +210,10 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[Str
         max_storage_bytes: u64::from(limits.max_storage_buffer_range),
         subgroup_size: subgroup.subgroup_size,
         snap_px: (0.5f32).powi(limits.sub_pixel_precision_bits as i32),
+        samples: limits.framebuffer_color_sample_counts
+            & limits.framebuffer_depth_sample_counts
+            & limits.sampled_image_color_sample_counts
+            & limits.sampled_image_depth_sample_counts,
         timestamp_ns: if has(Extra::Timestamps) { limits.timestamp_period } else { 0.0 },
         timestamp_bits: if has(Extra::Timestamps) { bits } else { 0 },
         cache_key: format!("{cache_key}-{:08x}-{:08x}-{:08x}", core.vendor_id, core.device_id, core.driver_version),

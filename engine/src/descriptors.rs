@@ -154,7 +154,12 @@ fn stage_of(op: &Op) -> Option<&BoundStage> {
         | Op::DispatchIndirect { stage, .. }
         | Op::Draw { stage, .. }
         | Op::Query { stage, .. } => Some(stage).filter(|stage| !stage.resources.is_empty()),
-        Op::Clear { .. } | Op::Fill { .. } | Op::Copy { .. } | Op::CopyImage { .. } => None,
+        Op::Clear { .. }
+        | Op::Fill { .. }
+        | Op::Copy { .. }
+        | Op::CopyImage { .. }
+        | Op::FillImage { .. }
+        | Op::ResolveColour { .. } => None,
     }
 }
 

@@ -86,9 +86,11 @@ impl Frame {
             vulkan.bury();
             vulkan.frames_alive.fetch_add(1, Ordering::AcqRel);
         }
+        let mut recorder = Recorder::default();
+        recorder.standard_depth(gpu.depth().is_standard());
         Frame {
             gpu: gpu.clone(),
-            recorder: Recorder::default(),
+            recorder,
             title: String::new(),
             report: FrameReport::default(),
             queries: None,
@@ -354,8 +356,14 @@ impl Frame {
         Ok(data)
     }
 
-    /// Runs what is left and reports what the frame did. A message of the validation layer is an error.
+    /// Runs what is left and reports what the frame did: samples' colours become pixels'. A message of the validation layer is an error.
     pub fn finish(mut self) -> Result<FrameReport> {
+        self.recorder.resolve_colours();
+        self.finish_unresolved()
+    }
+
+    /// The same, leaving the pixels' colours as they were: of a frame whose samples are read themselves.
+    pub fn finish_unresolved(mut self) -> Result<FrameReport> {
         self.submit_and_wait()?;
         if self.gpu.vulkan()?.instance.validating {
             if let Some(message) = self.gpu.take_messages().into_iter().next() {

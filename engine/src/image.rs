@@ -21,11 +21,20 @@ pub struct Image {
     allocation: Option<Allocation>,
     format: Format,
     size: [u32; 2],
+    samples: u32,
 }
 
 impl Image {
     /// Makes an image of `size` in pixels. Its contents are undefined until it is cleared or drawn to.
     pub fn new(gpu: &Gpu, name: &str, format: Format, size: [u32; 2]) -> Result<Self> {
+        Self::with_samples(gpu, name, format, size, 1)
+    }
+
+    /// The same of so many samples a pixel: it is drawn to, and read by stages or resolved, but never copied or read back.
+    ///
+    /// # Errors
+    /// A number that the device does not have, or a device without room.
+    pub fn with_samples(gpu: &Gpu, name: &str, format: Format, size: [u32; 2], samples: u32) -> Result<Self> {
         let id = gpu.new_id(name);
         let mut image = Image {
             gpu: gpu.clone(),
@@ -35,9 +44,11 @@ impl Image {
             allocation: None,
             format,
             size,
+            samples,
         };
         if let Some(vulkan) = &gpu.0.vulkan {
             check_size(vulkan, name, size)?;
+            check_samples(vulkan, name, samples)?;
             image.create(vulkan, name)?;
         }
         Ok(image)
@@ -60,13 +71,20 @@ impl Image {
 
     /// Reads the whole image, row by row from the top, now; the device must be idle (between frames). Depth comes as reversed
     /// floats, in whatever format it is kept.
+    ///
+    /// # Panics
+    /// If it has several samples a pixel.
     pub fn read(&self) -> Result<Vec<u8>> {
         let [texels] = Self::read_together([self])?;
         Ok(texels)
     }
 
     /// Reads several images of one device as [`Image::read`] does, with one wait for all.
+    ///
+    /// # Panics
+    /// If one has several samples a pixel.
     pub fn read_together<const N: usize>(images: [&Image; N]) -> Result<[Vec<u8>; N]> {
+        assert!(images.iter().all(|image| image.samples == 1), "samples are read by a stage");
         let Some(first) = images.first() else { return Ok(std::array::from_fn(|_| Vec::new())) };
         let sources = images.map(|image| Source::Image { raw: image.raw, format: image.format, size: image.size });
         let mut texels = first.gpu.stage_from(&sources)?.into_iter();
@@ -101,7 +119,7 @@ impl Image {
             .extent(vk::Extent3D { width: self.size[0], height: self.size[1], depth: 1 })
             .mip_levels(1)
             .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(vk::SampleCountFlags::from_raw(self.samples))
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(
                 attachment
@@ -155,6 +173,19 @@ impl Image {
             device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().image_memory_barriers(&barrier));
         })
     }
+}
+
+fn check_samples(vulkan: &Vulkan, name: &str, samples: u32) -> Result<()> {
+    if samples == 1 || vulkan.info.samples.contains(vk::SampleCountFlags::from_raw(samples)) {
+        return Ok(());
+    }
+    Err(Error::TooLarge {
+        what: format!("'{name}'"),
+        wanted: format!("{samples} samples a pixel"),
+        limit: format!("{:?}", vulkan.info.samples),
+        device: vulkan.info.name.clone(),
+        remedy: "use one sample".to_owned(),
+    })
 }
 
 fn check_size(vulkan: &Vulkan, name: &str, size: [u32; 2]) -> Result<()> {

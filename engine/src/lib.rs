@@ -44,7 +44,7 @@ pub use lower::folded;
 pub use memory::{Buffer, Placement};
 pub use messages::Message;
 pub use recorder::{Faces, IndexedIndirect, Op, Primitives, QueriesRef, Recorded, Recorder, Surface};
-pub use target::{Format, Target};
+pub use target::{Format, KeptSample, Samples, Target};
 pub use timers::TimerMode;
 pub use window::{Panel, Shown, Window};
 

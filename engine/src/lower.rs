@@ -5,14 +5,15 @@ use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
-use crate::target::Target;
+use crate::target::{Format, Target};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
-use crate::transfer::{full_barrier, whole_image};
+use crate::transfer::full_barrier;
 use crate::{Error, Result};
 use ash::vk;
 use shaders::{Bound, BoundStage};
 use vk::Handle;
 
+mod copies;
 mod queried;
 
 /// Bytes of an indexed indirect command.
@@ -186,15 +187,9 @@ impl Recording<'_> {
                 // SAFETY: the destination is at least as long, by `Frame::copy`'s contract.
                 unsafe { device.cmd_copy_buffer(self.commands, from, to, &region) };
             }
-            Op::CopyImage { from, format, size, to } => {
-                let (to, offset, _) = range(to);
-                let region = [whole_image(*format, *size).buffer_offset(offset)];
-                let from = vk::Image::from_raw(from.image);
-                // SAFETY: images are always in the general layout; the buffer has room by `Frame::copy_depth`'s contract.
-                unsafe {
-                    device.cmd_copy_image_to_buffer(self.commands, from, vk::ImageLayout::GENERAL, to, &region);
-                }
-            }
+            Op::CopyImage { from, format, size, to } => self.copy_image(from.image, *format, *size, to),
+            Op::FillImage { from, to, format, size } => self.fill_image(from, to.image, *format, *size),
+            Op::ResolveColour { from, to, size } => self.resolve_colour(from.image, to.image, *size),
         }
         Ok(())
     }
@@ -244,6 +239,7 @@ impl Recording<'_> {
                 primitives: draw.primitives,
                 faces: draw.faces,
                 blended: draw.surface == Surface::Translucent,
+                samples: target.samples.map_or(1, |samples| samples.count),
             }),
         )?;
         let device = &self.vulkan.device;
@@ -276,17 +272,19 @@ impl Recording<'_> {
                 .store_op(vk::AttachmentStoreOp::STORE)
                 .clear_value(clear)
         };
-        let black = vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } };
-        let nothing = vk::ClearValue { color: vk::ClearColorValue { uint32: [shaders::types::ITEM_NONE; 4] } };
+        let cleared = |format: Format| vk::ClearValue {
+            color: match format {
+                Format::Item => vk::ClearColorValue { uint32: [shaders::types::ITEM_NONE; 4] },
+                // All bytes of nobody's index are full.
+                Format::Owner => vk::ClearColorValue { float32: [1.0; 4] },
+                _ => vk::ClearColorValue { float32: [0.0; 4] },
+            },
+        };
         let [far_depth, near_depth] = self.vulkan.depth.range();
         let far = vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: far_depth, stencil: 0 } };
-        let colours: Vec<_> = target
-            .colour
-            .map(|(image, _)| attachment(image.view, black))
-            .into_iter()
-            .chain(target.item.map(|image| attachment(image.view, nothing)))
-            .collect();
-        let mut depth = attachment(target.depth.view, far);
+        let colours: Vec<_> =
+            target.drawn_colours().map(|(image, format)| attachment(image.view, cleared(format))).collect();
+        let mut depth = attachment(target.drawn_depth().view, far);
         if target.depth_read_only {
             depth = depth.store_op(vk::AttachmentStoreOp::NONE);
         }

@@ -76,6 +76,7 @@ impl Check {
                 depth: depth.view(),
                 depth_read_only: false,
                 strictly_nearer: false,
+                samples: None,
             },
             _images: [colour, depth],
             words: Buffer::new(gpu, "engine.timer_check.words", CHECK_WORDS as usize, Placement::Storage)?,

@@ -42,6 +42,8 @@ pub(crate) struct DrawState {
     pub(crate) faces: Faces,
     /// Colours are blended by their alpha.
     pub(crate) blended: bool,
+    /// Samples a pixel.
+    pub(crate) samples: u32,
 }
 
 type Key = (&'static str, Vec<u32>, Option<DrawState>);
@@ -277,7 +279,8 @@ fn draw_pipeline(
             Faces::Both => vk::CullModeFlags::NONE,
             Faces::Front => vk::CullModeFlags::BACK,
         });
-    let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let samples = vk::PipelineMultisampleStateCreateInfo::default()
+        .rasterization_samples(vk::SampleCountFlags::from_raw(state.samples));
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
         .depth_write_enable(state.depth_write)

@@ -5,6 +5,10 @@ use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
 
+mod samples;
+
+use samples::Unresolved;
+
 /// How indices form primitives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Primitives {
@@ -141,6 +145,26 @@ pub enum Op {
         /// The destination, with room for all texels.
         to: Bound,
     },
+    /// All texels of an image from a buffer.
+    FillImage {
+        /// The source, which holds all texels.
+        from: Bound,
+        /// The destination.
+        to: ImageRef,
+        /// What it holds.
+        format: Format,
+        /// Its width and height in pixels.
+        size: [u32; 2],
+    },
+    /// The mean of each pixel's samples to an image of one sample.
+    ResolveColour {
+        /// The source.
+        from: ImageRef,
+        /// The destination.
+        to: ImageRef,
+        /// Width and height of both in pixels.
+        size: [u32; 2],
+    },
 }
 
 /// A step with its label and the barrier before it.
@@ -160,6 +184,7 @@ pub struct Recorder {
     pub(crate) ops: Vec<Recorded>,
     tracker: BarrierTracker,
     part: &'static str,
+    samples: Unresolved,
 }
 
 impl Recorder {
@@ -177,8 +202,27 @@ impl Recorder {
         }
     }
 
-    /// Adds a step under the stage name given.
+    /// Depths are kept with 0 near: the farthest is then the greatest.
+    pub(crate) fn standard_depth(&mut self, is_standard: bool) {
+        self.samples.standard_depth = is_standard;
+    }
+
+    /// Adds a step under the stage name given; before it, what makes the depths that it reads of the samples that they are of.
     pub fn push(&mut self, stage: &str, op: Op) {
+        for (stage, op) in self.samples.before(&op) {
+            self.add(stage, op);
+        }
+        self.add(stage, op);
+    }
+
+    /// Makes the colours of all targets of several samples that were drawn to.
+    pub(crate) fn resolve_colours(&mut self) {
+        for (stage, op) in self.samples.colours() {
+            self.add(stage, op);
+        }
+    }
+
+    fn add(&mut self, stage: &str, op: Op) {
         let barrier = self.tracker.next(&uses(&op));
         self.ops.push(Recorded { label: self.label(stage), op, barrier });
     }
@@ -231,6 +275,8 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
         Op::Fill { buffer, value } => format!("{}={value}", name(resource(buffer))),
         Op::Copy { from, to } => format!("{} to {}", name(resource(from)), name(resource(to))),
         Op::CopyImage { from, to, .. } => format!("{} to {}", name(from.id), name(resource(to))),
+        Op::FillImage { from, to, .. } => format!("{} to {}", name(resource(from)), name(to.id)),
+        Op::ResolveColour { from, to, .. } => format!("{} to {}", name(from.id), name(to.id)),
     }
 }
 
@@ -270,6 +316,12 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
         Op::CopyImage { from, to, .. } => {
             vec![Use::read(from.id, Point::Transfer), Use::write(resource(to), Point::Transfer)]
         }
+        Op::FillImage { from, to, .. } => {
+            vec![Use::read(resource(from), Point::Transfer), Use::write(to.id, Point::Transfer)]
+        }
+        Op::ResolveColour { from, to, .. } => {
+            vec![Use::read(from.id, Point::Transfer), Use::write(to.id, Point::Transfer)]
+        }
     }
 }
 
@@ -284,9 +336,8 @@ fn bindings(stage: &BoundStage, point: Point) -> Vec<Use> {
 }
 
 fn attachments(target: &Target) -> Vec<Use> {
-    let depth = Use::both(target.depth.id, Point::Depth);
+    let depth = Use::both(target.drawn_depth().id, Point::Depth);
     let mut uses = vec![Use { writes: !target.depth_read_only, ..depth }];
-    uses.extend(target.colour.map(|(image, _)| Use::both(image.id, Point::Colour)));
-    uses.extend(target.item.map(|image| Use::both(image.id, Point::Colour)));
+    uses.extend(target.drawn_colours().map(|(image, _)| Use::both(image.id, Point::Colour)));
     uses
 }

@@ -1137,6 +1137,106 @@ const _: () = {
     assert!(size_of::<OverdrawInstance>() == 64);
 };
 
+/// The item buffer of a picture of several samples a pixel: the bytes of whose each sample is. For the truth, never in timed frames.
+///
+/// Four bytes that a colour keeps exactly. Occluded fragments stop before this shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Owners {
+    /// `view` in GLSL.
+    pub view: types::View,
+}
+
+impl Stage for Owners {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "draw/owners",
+        modules: &[
+            ShaderModule { kind: ShaderKind::Vertex, spirv: include_bytes!("spirv/draw/owners.vert.spv") },
+            ShaderModule { kind: ShaderKind::Fragment, spirv: include_bytes!("spirv/draw/owners.frag.spv") },
+        ],
+        bindings: &[],
+        push_size: 88,
+        constants: &[],
+        local_size: [0, 0, 0],
+        vertex: &[
+            VertexAttribute { name: "position", location: 0, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
+        ],
+        vertex_stride: 16,
+        instance: &[
+            VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
+            VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
+            VertexAttribute { name: "column_z", location: 4, format: VertexFormat::Float3, offset: 24 },
+            VertexAttribute { name: "origin_high", location: 5, format: VertexFormat::Float3, offset: 36 },
+            VertexAttribute { name: "origin_low", location: 6, format: VertexFormat::Float3, offset: 48 },
+            VertexAttribute { name: "colour", location: 7, format: VertexFormat::Uint, offset: 60 },
+        ],
+        instance_stride: 64,
+        outputs: &[0],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = OwnersPush { view: self.view };
+        BoundStage::new(Self::INFO, vec![], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl GraphicsStage for Owners {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct OwnersPush {
+    view: types::View,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(OwnersPush, view) == 0);
+    assert!(size_of::<OwnersPush>() == 88);
+};
+
+/// One vertex of [`Owners`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct OwnersVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// Octahedral; not used.
+    pub normal_snorm16: [i16; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(OwnersVertex, position) == 0);
+    assert!(std::mem::offset_of!(OwnersVertex, normal_snorm16) == 12);
+    assert!(size_of::<OwnersVertex>() == 16);
+};
+
+/// One instance of [`Owners`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct OwnersInstance {
+    /// `instance_column_x` in GLSL.
+    pub column_x: [f32; 3],
+    /// `instance_column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `instance_column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `instance_origin_high` in GLSL.
+    pub origin_high: [f32; 3],
+    /// `instance_origin_low` in GLSL.
+    pub origin_low: [f32; 3],
+    /// `instance_colour` in GLSL.
+    pub colour: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(OwnersInstance, column_x) == 0);
+    assert!(std::mem::offset_of!(OwnersInstance, column_y) == 12);
+    assert!(std::mem::offset_of!(OwnersInstance, column_z) == 24);
+    assert!(std::mem::offset_of!(OwnersInstance, origin_high) == 36);
+    assert!(std::mem::offset_of!(OwnersInstance, origin_low) == 48);
+    assert!(std::mem::offset_of!(OwnersInstance, colour) == 60);
+    assert!(size_of::<OwnersInstance>() == 64);
+};
+
 /// Draw/objects with base colour textures and vertex colours, with early fragment tests.
 ///
 /// The colour. Occluded fragments stop before this shader.

@@ -142,6 +142,84 @@ impl Default for CopyDepthConstants {
     }
 }
 
+/// One depth a pixel, of those of its samples: the farthest, so that what is behind it is behind all of them. As it is
+/// kept, whichever way around.
+/// No twin: it is the least or the greatest of some numbers; tests/tests/samples.rs holds it to the samples that the host reads.
+#[derive(Clone, Copy, Debug)]
+pub struct ResolveDepth {
+    /// `depth` in GLSL.
+    pub depth: ImageRef,
+    /// `resolved` in GLSL.
+    pub resolved: BufferRef<f32>,
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
+    /// `samples` in GLSL.
+    pub samples: u32,
+    /// Specialization constants.
+    pub constants: ResolveDepthConstants,
+}
+
+impl Stage for ResolveDepth {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "engine/resolve_depth",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/engine/resolve_depth.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "depth", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "resolved", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 12,
+        constants: &[ConstantInfo { name: "LEAST", id: 0 }],
+        local_size: [8, 8, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = ResolveDepthPush { size_px: self.size_px, samples: self.samples };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.depth.into(), self.resolved.into()],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.least)],
+        )
+    }
+}
+
+impl ComputeStage for ResolveDepth {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ResolveDepthPush {
+    size_px: [u32; 2],
+    samples: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(ResolveDepthPush, size_px) == 0);
+    assert!(std::mem::offset_of!(ResolveDepthPush, samples) == 8);
+    assert!(size_of::<ResolveDepthPush>() == 12);
+};
+
+/// Specialization constants of [`ResolveDepth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResolveDepthConstants {
+    /// The least is kept, otherwise the greatest.
+    pub least: bool,
+}
+
+impl Default for ResolveDepthConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { least: true }
+    }
+}
+
 /// A triangle over the whole target, for the timer's self-check.
 ///
 /// Work of a known size a pixel, for the timer's self-check.
@@ -223,3 +301,77 @@ const _: () = {
     assert!(std::mem::offset_of!(SpinWordsPush, word_count) == 0);
     assert!(size_of::<SpinWordsPush>() == 4);
 };
+
+/// Every sample of an image as a word, in a picture twice as wide and high: what the truth and all measures look at where
+/// pixels have four samples. Never in timed frames.
+/// No twin: a word is a sample; tests/tests/samples.rs holds it to pictures of one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct SpreadSamples {
+    /// `image` in GLSL.
+    pub image: ImageRef,
+    /// `spread` in GLSL.
+    pub spread: BufferRef<u32>,
+    /// `size_px` in GLSL.
+    pub size_px: [u32; 2],
+    /// Specialization constants.
+    pub constants: SpreadSamplesConstants,
+}
+
+impl Stage for SpreadSamples {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "engine/spread_samples",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/engine/spread_samples.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "image", binding: 0, kind: BindingKind::SampledImage, access: Access::Read },
+            BindingInfo { name: "spread", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 8,
+        constants: &[ConstantInfo { name: "FLOATS", id: 0 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = SpreadSamplesPush { size_px: self.size_px };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.image.into(), self.spread.into()],
+            bytemuck::bytes_of(&push),
+            vec![u32::from(self.constants.floats)],
+        )
+    }
+}
+
+impl ComputeStage for SpreadSamples {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SpreadSamplesPush {
+    size_px: [u32; 2],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(SpreadSamplesPush, size_px) == 0);
+    assert!(size_of::<SpreadSamplesPush>() == 8);
+};
+
+/// Specialization constants of [`SpreadSamples`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpreadSamplesConstants {
+    /// The samples are floats, otherwise four bytes.
+    pub floats: bool,
+}
+
+impl Default for SpreadSamplesConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { floats: false }
+    }
+}

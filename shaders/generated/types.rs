@@ -156,6 +156,9 @@ pub const WRAP_CLAMP: u32 = 2;
 /// Bits of Material.wrap for x; those for y follow.
 pub const WRAP_BITS: u32 = 2;
 
+/// How far a sample may lie from its pixel's centre, where pixels have several.
+pub const SAMPLE_REACH_PX: f32 = 0.5;
+
 /// `TREE_NONE` in GLSL.
 pub const TREE_NONE: u32 = 0xffffffff;
 
@@ -252,7 +255,7 @@ pub struct CullView {
     pub width_px: u32,
     /// `height_px` in GLSL.
     pub height_px: u32,
-    /// The device rounds vertex positions to this grid, pixels.
+    /// The device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples.
     pub snap_px: f32,
     /// What is smaller on the screen is left out; 0 leaves out nothing.
     pub detail_px: f32,

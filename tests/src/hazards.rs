@@ -35,9 +35,13 @@ fn stage(stage: &BoundStage, point: Point) -> Vec<Touch> {
 }
 
 fn target(target: &Target) -> Vec<Touch> {
-    let colours = target.colour.map(|(image, _)| image.id).into_iter().chain(target.item.map(|image| image.id));
+    let (colour, depth) = match target.samples {
+        Some(samples) => (samples.colour.map(|image| image.id), samples.depth.id),
+        None => (target.colour.map(|(image, _)| image.id), target.depth.id),
+    };
+    let colours = colour.into_iter().chain(target.item.map(|image| image.id));
     let mut touches: Vec<_> = colours.map(|image| touch(image, Point::Colour, true, true)).collect();
-    touches.push(touch(target.depth.id, Point::Depth, true, !target.depth_read_only));
+    touches.push(touch(depth, Point::Depth, true, !target.depth_read_only));
     touches
 }
 
@@ -68,6 +72,12 @@ fn touches(op: &Op) -> Vec<Touch> {
         }
         Op::CopyImage { from, to, .. } => {
             vec![touch(from.id, Point::Transfer, true, false), touch(id(to), Point::Transfer, false, true)]
+        }
+        Op::FillImage { from, to, .. } => {
+            vec![touch(id(from), Point::Transfer, true, false), touch(to.id, Point::Transfer, false, true)]
+        }
+        Op::ResolveColour { from, to, .. } => {
+            vec![touch(from.id, Point::Transfer, true, false), touch(to.id, Point::Transfer, false, true)]
         }
     }
 }

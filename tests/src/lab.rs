@@ -39,6 +39,11 @@ impl Lab {
         Lab(good(lab::Lab::new(gpu, case)))
     }
 
+    /// The same, drawn with so many samples a pixel.
+    pub fn with_samples(gpu: &Gpu, case: &Case, samples: u32) -> Self {
+        Lab(good(lab::Lab::with_samples(gpu, case, samples)))
+    }
+
     /// Changes the picture's size.
     pub fn resize(&mut self, size: [u32; 2]) {
         good(self.0.resize(size));
@@ -75,6 +80,11 @@ impl Lab {
     /// Runs one frame with the item buffer on.
     pub fn take(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize) -> Take {
         good(self.0.take(method, shot, frame))
+    }
+
+    /// The same through a view, of objects where they are now.
+    pub fn take_through(&mut self, method: &mut dyn Method, view: &View) -> Take {
+        good(self.0.take_through(method, view))
     }
 
     /// Runs one frame as it is timed, without the item buffer; the items are what an earlier frame left.

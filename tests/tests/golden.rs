@@ -21,6 +21,7 @@ fn recorded(id: &str, case: &worlds::Case, frames: usize, mut look: impl FnMut(u
         depth: depth.view(),
         depth_read_only: false,
         strictly_nearer: false,
+        samples: None,
     };
     let items = image("target.item", Format::Item);
     let entry = culling::find(id).unwrap();

@@ -34,3 +34,25 @@ fn what_is_no_terminal_gets_no_colours() {
         assert!(![output.stdout, output.stderr].concat().contains(&0x1b), "{arguments}");
     }
 }
+
+#[test]
+fn several_samples_a_pixel_are_drawn_or_refused_in_one_line() {
+    let out = std::env::temp_dir().join(format!("sightline-samples-{}", std::process::id()));
+    let small = format!("--scene boxes --scale 0.2 --size 64x36 --samples 4 --out {}", out.display());
+    let ran = sightline(&format!("bench --frames 2 --no-report --method none,hzb {small}"));
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let results = std::fs::read_to_string(out.join("results.json")).unwrap();
+    assert!(results.contains("\"samples\": \"4\""), "results say how finely pixels were drawn");
+    for (arguments, said) in [
+        ("shot --method eovc", "method 'eovc' cannot: it casts one ray"),
+        ("shot --method hzb --view warp", "this view warps depths of one sample"),
+        ("shot --method hzb --depth-format d16", "leave --depth-format out"),
+        ("bench --table tog-2", "table tog-2 warps depths of one sample"),
+    ] {
+        let refused = sightline(&format!("{arguments} {small}"));
+        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(1), "{arguments}: {error}");
+        assert!(error.contains(said) && error.lines().count() == 1, "{arguments}: {error}");
+    }
+    std::fs::remove_dir_all(&out).unwrap();
+}

@@ -1,6 +1,6 @@
 //! What `include/box.glsl` does, in plain Rust.
 
-use crate::frustum::twin::{clip_from_bounds, farthest_along, ClipBox};
+use crate::frustum::twin::{clip_from_bounds, farthest_along, grid_px, ClipBox};
 use glam::{Vec3, Vec4};
 use shaders::types::{Bounds, CullView, BOX_PAD_SNAPS, DEPTH_ROUNDING, OBJECT_WIDE_RASTER};
 
@@ -15,7 +15,7 @@ pub fn grown(bounds: &Bounds, view: &CullView) -> Bounds {
     let clip: ClipBox = clip_from_bounds(bounds, view);
     let w_max = clip.centre.w + clip.axes.iter().map(|axis| axis.w.abs()).sum::<f32>() + clip.error.w;
     let wide = if bounds.flags & OBJECT_WIDE_RASTER != 0 { 1.0 } else { 0.0 };
-    let pad = 2.0 * (BOX_PAD_SNAPS * view.snap_px + wide) * w_max / pixels_per_unit(view);
+    let pad = 2.0 * (BOX_PAD_SNAPS * grid_px(view) + wide) * w_max / pixels_per_unit(view);
     let growth = pad + depth_growth(&clip, view, w_max);
     Bounds { half_extent: bounds.half_extent.map(|half| half + growth), ..*bounds }
 }

@@ -1,6 +1,8 @@
 //! The frustum test in plain Rust, and the f64 oracle that bounds it from below.
 
-use shaders::types::{Bounds, CullView, BLOCK_OBJECTS, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER};
+use shaders::types::{
+    Bounds, CullView, BLOCK_OBJECTS, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, SAMPLE_REACH_PX,
+};
 
 type Vec4 = glam::Vec4;
 type Vec3 = glam::Vec3;
@@ -14,6 +16,15 @@ pub struct ClipBox {
     pub axes: [Vec4; 3],
     /// Bound of each coordinate's error.
     pub error: Vec4,
+}
+
+/// Twin of `grid_px`.
+pub fn grid_px(view: &CullView) -> f32 {
+    if view.snap_px >= SAMPLE_REACH_PX {
+        view.snap_px - SAMPLE_REACH_PX
+    } else {
+        view.snap_px
+    }
 }
 
 /// Twin of `clip_from_bounds`.

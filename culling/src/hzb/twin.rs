@@ -1,6 +1,6 @@
 //! The hierarchical-Z stages in plain Rust: their definition.
 
-use crate::frustum::twin::{clip_from_bounds, farthest_along, left_out, ClipBox};
+use crate::frustum::twin::{clip_from_bounds, farthest_along, grid_px, left_out, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
     Bounds, CullView, PyramidLevel, BLOCK_OBJECTS, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER,
@@ -87,7 +87,8 @@ pub fn footprint_of(clip: &ClipBox, view: &CullView, flags: u32) -> Footprint {
         farthest = farthest.min(position.z / position.w);
     }
     let size = Vec2::new(view.width_px as f32, view.height_px as f32);
-    let grow = view.snap_px + if flags & OBJECT_WIDE_RASTER != 0 { 1.0 } else { 0.0 };
+    let wide = if flags & OBJECT_WIDE_RASTER != 0 { 1.0 } else { 0.0 };
+    let grow = view.snap_px + wide;
     let pad = Vec2::splat(grow) + ROUNDING * size;
     let first = ((low * 0.5 + 0.5) * size - pad - 0.5).ceil();
     let last = ((high * 0.5 + 0.5) * size + pad - 0.5).floor();
@@ -97,7 +98,8 @@ pub fn footprint_of(clip: &ClipBox, view: &CullView, flags: u32) -> Footprint {
         empty: first.cmpgt(last).any() || last.cmplt(Vec2::ZERO).any() || first.cmpge(size).any(),
         first: inside(first),
         last: inside(last),
-        nearest: (nearest + (nearest - farthest.min(nearest)) * DEPTH_SLACK_PER_PIXEL * grow).min(1.0),
+        nearest: (nearest + (nearest - farthest.min(nearest)) * DEPTH_SLACK_PER_PIXEL * (grid_px(view) + wide))
+            .min(1.0),
     }
 }
 

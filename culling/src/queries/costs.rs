@@ -138,6 +138,7 @@ impl Bench {
                 depth: depth.view(),
                 depth_read_only: false,
                 strictly_nearer: false,
+                samples: None,
             },
             _depth: depth,
             shape,

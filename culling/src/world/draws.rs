@@ -70,6 +70,11 @@ impl World {
         // A target that holds counts is an overdraw picture: the same draws, counted instead of shaded.
         if matches!(target.colour, Some((_, engine::Format::Heat))) {
             self.draw_counted(f, (draw, queried), view, &target);
+        } else if matches!(target.colour, Some((_, engine::Format::Owner))) {
+            // What is translucent owns nothing.
+            if draw.surface == Surface::Opaque {
+                record(f, draw::Owners { view: view.gpu() }, (draw, queried), &target);
+            }
         } else if let Some(detail) = &self.detail {
             detail.draw(f, (draw, queried), view, &target);
         } else if target.item.is_some() {

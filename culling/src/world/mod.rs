@@ -355,6 +355,11 @@ impl World {
         self.host.solid_moves.iter().map(moved).map(move |(scene_object, transform)| (object(scene_object), transform))
     }
 
+    /// True if it has objects with holes.
+    pub fn has_masked(&self) -> bool {
+        self.ranges.iter().any(|range| range.surface == Surface::Masked)
+    }
+
     /// How a translucent object is drawn, as a range of none.
     pub(crate) fn translucent_kind(&self, object: u32) -> Range {
         self.host.translucent_kinds[object as usize - self.host.solid]

@@ -30,7 +30,7 @@ float pixels_per_unit(CullView view) {
 }
 
 float pad_px(CullView view, uint flags) {
-    return BOX_PAD_SNAPS * view.snap_px + ((flags & OBJECT_WIDE_RASTER) != 0u ? 1.0 : 0.0);
+    return BOX_PAD_SNAPS * grid_px(view) + ((flags & OBJECT_WIDE_RASTER) != 0u ? 1.0 : 0.0);
 }
 
 // How far a box must reach out for the rounding of its own faces' depth.

@@ -16,6 +16,11 @@ const float CLIP_ERROR = 32.0 / 16777216.0;
 // Invocations that stride over a draw list in woc/find_rapid.
 const uint RAPID_INVOCATIONS = 1024u;
 
+// The vertex grid of a view, whose snap_px may have the reach of samples in it. A grid has 1/16 pixel at most.
+float grid_px(CullView view) {
+    return view.snap_px >= SAMPLE_REACH_PX ? view.snap_px - SAMPLE_REACH_PX : view.snap_px;
+}
+
 struct ClipBox {
     vec4 centre;    // clip position of the box's centre
     vec4 axis_x;    // half extents, as clip vectors

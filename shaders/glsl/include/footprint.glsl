@@ -13,7 +13,8 @@
 // at its lowest (measured over 13,000 adverse triangles: 0.49 snap_px / h on lavapipe, 1.00 on SwiftShader, there at the
 // border alone). A line's pixels lie up to a pixel past its ends, and its depth goes on with its slope: at most
 // (1 + 2 snap_px) / l for a line l pixels long (measured on lavapipe: 0.5 / l). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8
-// pixel. Thinner slivers and shorter lines that span most of their box's depth range are outside the documented raster
+// pixel. Where pixels have several samples, each lies less than half a pixel from the centre: the rectangle grows by SAMPLE_REACH_PX, which the
+// view has in snap_px; depths are those of the plane at the sample, and no farther off it than a centre's. Thinner slivers and shorter lines that span most of their box's depth range are outside the documented raster
 // conditions; those of a dense mesh are not, as they span little of it.
 #ifndef FOOTPRINT_GLSL
 #define FOOTPRINT_GLSL
@@ -49,14 +50,16 @@ Footprint footprint_of(ClipBox box, CullView view, uint flags) {
         farthest = min(farthest, clip.z / clip.w);
     }
     vec2 size = vec2(view.width_px, view.height_px);
-    float grow = view.snap_px + ((flags & OBJECT_WIDE_RASTER) != 0u ? 1.0 : 0.0);
+    float wide = (flags & OBJECT_WIDE_RASTER) != 0u ? 1.0 : 0.0;
+    float grow = view.snap_px + wide;
     vec2 pad = vec2(grow) + ROUNDING * size;
     vec2 first = ceil((low * 0.5 + 0.5) * size - pad - 0.5);
     vec2 last = floor((high * 0.5 + 0.5) * size + pad - 0.5);
     result.empty = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size));
     result.first = uvec2(clamp(first, vec2(0.0), size - 1.0));
     result.last = uvec2(clamp(last, vec2(0.0), size - 1.0));
-    result.nearest = min(nearest + (nearest - min(farthest, nearest)) * DEPTH_SLACK_PER_PIXEL * grow, 1.0);
+    float off_plane = grid_px(view) + wide;
+    result.nearest = min(nearest + (nearest - min(farthest, nearest)) * DEPTH_SLACK_PER_PIXEL * off_plane, 1.0);
     return result;
 }
 #endif

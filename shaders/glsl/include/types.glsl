@@ -88,6 +88,9 @@ struct View {
     vec3 camera_low;
 };
 
+// How far a sample may lie from its pixel's centre, where pixels have several.
+const float SAMPLE_REACH_PX = 0.5;
+
 // A view as bounds tests need it: the matrix, the target's size and how exactly the device snaps vertices.
 struct CullView {
     mat4 clip_from_relative;
@@ -95,7 +98,7 @@ struct CullView {
     vec3 camera_low;
     uint width_px;
     uint height_px;
-    float snap_px;      // the device rounds vertex positions to this grid, pixels
+    float snap_px;      // the device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples
     float detail_px;    // what is smaller on the screen is left out; 0 leaves out nothing
 };
 

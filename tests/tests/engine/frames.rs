@@ -121,6 +121,7 @@ fn heavy_and_light(gpu: &Gpu) -> engine::FrameReport {
         depth: depth.view(),
         depth_read_only: false,
         strictly_nearer: false,
+        samples: None,
     };
     let corners = words(gpu, &[0, 1, 2]);
     let command = DrawCommand { index_count: 3, instance_count: 1, ..DrawCommand::default() };
@@ -189,6 +190,7 @@ fn the_heat_picture_counts_fragments_exactly() {
             depth: depth.view(),
             depth_read_only: false,
             strictly_nearer: false,
+            samples: None,
         };
         let projection = Projection::Orthographic { half_height: 1.0, near: 0.0, far: 20.0 };
         let view = View::new(&shot(glam::DVec3::ZERO, glam::DVec3::NEG_Z, projection), size, 0, gpu.snap_px());

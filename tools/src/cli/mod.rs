@@ -5,6 +5,7 @@ pub mod commands;
 mod compare;
 mod config;
 mod device;
+mod picture;
 mod stress;
 mod sweep;
 #[cfg(test)]
@@ -15,6 +16,8 @@ pub use colours::coloured;
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
+use picture::parse_size;
+pub use picture::SampleChoice;
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
 pub use view::{view_help, ViewArgs};
@@ -176,6 +179,9 @@ pub struct BenchArgs {
     /// Scene, path and size.
     #[command(flatten)]
     pub scene: SceneChoice,
+    /// Samples.
+    #[command(flatten)]
+    pub samples: SampleChoice,
     /// Methods and options.
     #[command(flatten)]
     pub methods: MethodChoice,
@@ -257,6 +263,9 @@ pub struct ShotArgs {
     /// Scene, path and size.
     #[command(flatten)]
     pub scene: SceneChoice,
+    /// Samples.
+    #[command(flatten)]
+    pub samples: SampleChoice,
     /// Device.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -364,6 +373,7 @@ impl SceneChoice {
             frames: self.frames as usize,
             size: self.size,
             shading: self.shading,
+            samples: 1,
         }
     }
 }
@@ -384,14 +394,5 @@ fn parse_shading(text: &str) -> std::result::Result<Shading, String> {
         "lambert" => Ok(Shading::Lambert),
         "textured" => Ok(Shading::Textured),
         _ => Err("it is lambert or textured".to_owned()),
-    }
-}
-
-fn parse_size(text: &str) -> std::result::Result<[u32; 2], String> {
-    let parts =
-        text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
-    match parts {
-        Some(size) if !size.contains(&0) => Ok(size),
-        _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
     }
 }

@@ -304,6 +304,12 @@ fn lacking(info: &engine::AdapterInfo) -> (String, String) {
     ("lacks".to_owned(), if lacks.is_empty() { "nothing".to_owned() } else { lacks.join(", ") })
 }
 
+/// Samples a pixel, where there are several: sizes are in pixels, errors are of samples.
+fn samples(session: &Session) -> Option<(String, String)> {
+    let samples = session.targets.samples();
+    (samples > 1).then(|| ("samples".to_owned(), samples.to_string()))
+}
+
 /// Results of a session without methods: what ran, on what.
 pub fn header(session: &Session, command: &str) -> Results {
     let info = session.gpu.info();
@@ -323,7 +329,7 @@ pub fn header(session: &Session, command: &str) -> Results {
                 mode => format!("{mode}, in frames of their own; frame times are taken without"),
             },
             depth_format: session.gpu.depth().to_string(),
-            details: info.map(lacking).into_iter().collect(),
+            details: info.map(lacking).into_iter().chain(samples(session)).collect(),
         },
         scene: results::Scene {
             name: session.scene.name.clone(),

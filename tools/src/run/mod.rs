@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod capture;
 pub mod methods;
+pub mod samples;
 pub mod session;
 pub mod sweep;
 pub mod targets;
@@ -10,7 +11,7 @@ pub mod truth;
 
 use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::run::session::Session;
-use anyhow::{Context, Result};
+use anyhow::{bail, Context, Result};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::DETAIL_OPTION;
 use culling::{drawn_objects, Drawn, Entry, Guarantee, Method, Options, Setup, View, VisibleSets, Work};
@@ -65,6 +66,10 @@ impl Contender {
         options: Options,
         visible: &Option<Arc<VisibleSets>>,
     ) -> Result<Self> {
+        let samples = session.targets.samples();
+        if let (2.., Some(why)) = (samples, entry.needs_one_sample(&session.world)) {
+            bail!("--samples {samples}: method '{}' cannot: {why}", options.label());
+        }
         let before = session.gpu.memory_mib();
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
         let made = (entry.make)(&setup).and_then(|method| culling::translucent::after(method, &setup));
@@ -116,14 +121,16 @@ impl Contender {
         let report = self.run(session, &view, Watched::Items)?;
         self.method.count_work(false);
         let work = self.method.work()?;
-        let images = session.targets.read()?;
+        let images = session.targets.read_frame(&session.world, &view, &report)?;
         let drawn = drawn_objects(&session.gpu, &session.world, &report)?;
         let error = compare(truth, &images, &drawn.objects)
             .with_context(|| format!("method '{}', frame {frame}", self.label()))?;
         let counts = fragment_counts(session, &view, &report)?;
         let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
+        let covered = covered as f64 / f64::from(session.targets.samples());
         let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
-        let overdraw = if covered == 0 { 0.0 } else { fragments as f64 / covered as f64 };
+        let overdraw = if covered == 0.0 { 0.0 } else { fragments as f64 / covered };
+        let counts = session.targets.spread(counts);
         Ok(Measured { error, drawn, overdraw, counts, work, images })
     }
 

@@ -30,6 +30,8 @@ pub struct SessionOptions {
     pub size: [u32; 2],
     /// What is drawn of materials; none takes what the scene has.
     pub shading: Option<Shading>,
+    /// Samples a pixel, 1 or 4.
+    pub samples: u32,
 }
 
 impl Default for SessionOptions {
@@ -45,6 +47,7 @@ impl Default for SessionOptions {
             frames: 30,
             size: [1280, 720],
             shading: None,
+            samples: 1,
         }
     }
 }
@@ -86,7 +89,7 @@ impl Session {
             name => CameraPath::named(&scene, name, options.speed)?,
         };
         let path = if options.whole_path { path.whole() } else { path };
-        let targets = Targets::new(gpu, options.size)?;
+        let targets = Targets::with_samples(gpu, options.size, options.samples)?;
         let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
         let world = World::shaded(gpu, &scene, shading).with_context(|| format!("scene '{}'", scene.name))?;
         Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })
@@ -116,13 +119,13 @@ impl Session {
     /// The same through a camera that is on no path; `frame` is what the view is numbered with.
     pub fn look_through(&mut self, shot: &Shot, frame: usize) -> Result<View> {
         self.world.set_time(&self.scene, shot.seconds)?;
-        Ok(View::new(shot, self.options.size, frame, self.gpu.snap_px()))
+        Ok(View::new(shot, self.options.size, frame, self.targets.reach_px(&self.gpu)))
     }
 
     /// Draws pictures of another size from now on.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         if size != self.options.size {
-            self.targets = Targets::new(&self.gpu, size)?;
+            self.targets = Targets::with_samples(&self.gpu, size, self.options.samples)?;
             self.options.size = size;
         }
         Ok(())
@@ -149,8 +152,9 @@ impl Session {
             .flat_map(|stage| stage.modules)
             .map(|module| format!("{:x}", module.spirv.len()))
             .collect();
+        let samples = self.options.samples;
         format!(
-            "scene={hash} path={} frames={} size={width}x{height} device={device} draw={shaders} shading={:?}",
+            "scene={hash} path={} frames={} size={width}x{height}x{samples} device={device} draw={shaders} shading={:?}",
             self.path.describe(),
             self.options.frames,
             self.shading()

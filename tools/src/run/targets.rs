@@ -1,7 +1,11 @@
 //! The images that frames are drawn to, and how they are read back.
 
+use super::samples::Sampled;
 use crate::measures::metrics::FrameImages;
-use engine::{Format, Gpu, Image, Result, Target};
+use anyhow::Result;
+use culling::{View, World};
+use engine::{Format, FrameReport, Gpu, Image, Target};
+use shaders::types::SAMPLE_REACH_PX;
 
 /// Colour, item buffer and depth of one size.
 pub struct Targets {
@@ -9,17 +13,40 @@ pub struct Targets {
     item: Image,
     depth: Image,
     count: Option<Image>,
+    /// None: pixels have one sample.
+    sampled: Option<Sampled>,
 }
 
 impl Targets {
     /// Targets of `size` pixels.
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self> {
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> engine::Result<Self> {
         Ok(Targets {
             colour: Image::new(gpu, "target.colour", Format::Colour, size)?,
             item: Image::new(gpu, "target.item", Format::Item, size)?,
             depth: Image::new(gpu, "target.depth", Format::Depth, size)?,
             count: None,
+            sampled: None,
         })
+    }
+
+    /// The same with 1 or 4 samples a pixel. Measured pictures are then of the samples, twice as wide and high, and
+    /// [`Targets::colour`] is what they come to.
+    ///
+    /// # Errors
+    /// A device, or a format of its depth, that has not so many.
+    pub fn with_samples(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self> {
+        let sampled = if samples > 1 { Some(Sampled::new(gpu, size, samples)?) } else { None };
+        Ok(Targets { sampled, ..Self::new(gpu, size)? })
+    }
+
+    /// How far from a pixel's centre what is drawn there may be found: the device's vertex grid, and the reach of samples.
+    pub fn reach_px(&self, gpu: &Gpu) -> f32 {
+        gpu.snap_px() + if self.sampled.is_some() { SAMPLE_REACH_PX } else { 0.0 }
+    }
+
+    /// Samples a pixel.
+    pub fn samples(&self) -> u32 {
+        self.sampled.as_ref().map_or(1, Sampled::count)
     }
 
     /// The picture that frames draw.
@@ -36,33 +63,45 @@ impl Targets {
             depth: self.depth.view(),
             depth_read_only: false,
             strictly_nearer: false,
+            samples: self.sampled.as_ref().map(Sampled::drawn),
         }
     }
 
     /// What untimed frames draw to: the item buffer too.
     pub fn with_items(&self) -> Target {
-        Target { item: Some(self.item.view()), ..self.timed() }
+        let item = if self.sampled.is_some() { None } else { Some(self.item.view()) };
+        Target { item, ..self.timed() }
     }
 
     /// A target that counts fragments instead of shading them. It shares the depth buffer.
-    pub fn counting(&mut self, gpu: &Gpu) -> Result<Target> {
+    pub fn counting(&mut self, gpu: &Gpu) -> engine::Result<Target> {
         let count = match self.count.take() {
             Some(count) => count,
             None => Image::new(gpu, "target.count", Format::Heat, self.colour.size())?,
         };
         let colour = Some((count.view(), Format::Heat));
         self.count = Some(count);
-        Ok(Target { colour, ..self.timed() })
+        // Fragments are counted at the pixels' centres.
+        Ok(Target { colour, samples: None, ..self.timed() })
     }
 
     /// Reads the counts of the last frame that counted: exact up to 2048 a pixel, where half floats end counting.
-    pub fn read_counts(&self) -> Result<Vec<u32>> {
+    pub fn read_counts(&self) -> engine::Result<Vec<u32>> {
         let Some(count) = &self.count else { return Ok(Vec::new()) };
         Ok(bytemuck::pod_collect_to_vec::<u8, u16>(&count.read()?).into_iter().map(count_from_half).collect())
     }
 
-    /// Reads all three images of the last frame that had the item buffer on.
-    pub fn read(&self) -> Result<FrameImages> {
+    /// Reads what a frame drew, once it is finished: all three images, of a frame that had the item buffer on; of several samples a pixel,
+    /// these, and whose they are by drawing the frame's lists again.
+    pub fn read_frame(&self, world: &World, view: &View, report: &FrameReport) -> Result<FrameImages> {
+        match &self.sampled {
+            None => Ok(self.read()?),
+            Some(sampled) => sampled.read(&self.timed(), world, view, report),
+        }
+    }
+
+    /// Reads all three images of the last frame that had the item buffer on; of several samples a pixel, what these came to.
+    pub fn read(&self) -> engine::Result<FrameImages> {
         let [width, height] = self.colour.size();
         let [colour, depth, items] = Image::read_together([&self.colour, &self.depth, &self.item])?;
         Ok(FrameImages {
@@ -75,8 +114,18 @@ impl Targets {
         })
     }
 
+    /// What is counted by pixel, in a picture as large as those that [`Targets::read_frame`] gives.
+    pub fn spread(&self, counts: Vec<u32>) -> Vec<u32> {
+        if self.sampled.is_none() {
+            return counts;
+        }
+        let twice = |row: &[u32]| row.iter().flat_map(|count| [*count; 2]).collect::<Vec<_>>();
+        let rows = counts.chunks(self.colour.size()[0] as usize).map(twice);
+        rows.flat_map(|row| row.repeat(2)).collect()
+    }
+
     /// Reads the item buffer alone.
-    pub fn read_items(&self) -> Result<Vec<u32>> {
+    pub fn read_items(&self) -> engine::Result<Vec<u32>> {
         Ok(bytemuck::pod_collect_to_vec(&self.item.read()?))
     }
 }

@@ -42,9 +42,9 @@ pub fn draw_truth(gpu: &Gpu, world: &World, targets: &Targets, view: &View) -> R
     if let Some(seen) = &mut seen {
         seen.frame(&mut f, world, view, &target)?;
     }
-    f.finish()?;
+    let report = f.finish()?;
     let seen_through = seen.map_or(Ok(Vec::new()), |seen| seen.objects())?;
-    Ok(FrameImages { seen_through, ..targets.read()? })
+    Ok(FrameImages { seen_through, ..targets.read_frame(world, view, &report)? })
 }
 
 impl RunTruth {
@@ -53,7 +53,8 @@ impl RunTruth {
         let mut sets = VisibleSets::new(session.world.total());
         let mut images = Vec::new();
         let [width, height] = session.options().size;
-        let keep = session.frames() * width as usize * height as usize * 12 <= KEPT_BYTES;
+        let samples = session.targets.samples() as usize;
+        let keep = session.frames() * width as usize * height as usize * samples * 12 <= KEPT_BYTES;
         for frame in 0..session.frames() {
             let drawn = draw_everything(session, frame)?;
             sets.push_items(&drawn.visible_items());

@@ -74,14 +74,19 @@ pub struct Lab {
 impl Lab {
     /// Puts a case's scene on the device.
     pub fn new(gpu: &Gpu, case: &Case) -> Result<Self> {
+        Self::with_samples(gpu, case, 1)
+    }
+
+    /// The same, drawn with so many samples a pixel.
+    pub fn with_samples(gpu: &Gpu, case: &Case, samples: u32) -> Result<Self> {
         let world = World::new(gpu, &case.scene).with_context(|| case.name.clone())?;
-        let targets = Targets::new(gpu, case.size)?;
+        let targets = Targets::with_samples(gpu, case.size, samples)?;
         Ok(Lab { gpu: gpu.clone(), scene: case.scene.clone(), world, targets, size: case.size })
     }
 
     /// Changes the picture's size.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
-        self.targets = Targets::new(&self.gpu, size)?;
+        self.targets = Targets::with_samples(&self.gpu, size, self.targets.samples())?;
         self.size = size;
         Ok(())
     }
@@ -89,7 +94,7 @@ impl Lab {
     /// Moves the scene to a shot's time and looks through it.
     pub fn look(&mut self, shot: &Shot, frame: usize) -> Result<View> {
         self.world.set_time(&self.scene, shot.seconds)?;
-        Ok(View::new(shot, self.size, frame, self.gpu.snap_px()))
+        Ok(View::new(shot, self.size, frame, self.targets.reach_px(&self.gpu)))
     }
 
     /// The truth of a shot: everything is drawn.
@@ -116,15 +121,22 @@ impl Lab {
 
     /// Runs one frame with the item buffer on.
     pub fn take(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize) -> Result<Take> {
-        let report = self.run(method, shot, frame, true)?;
-        let images = self.targets.read()?;
+        let view = self.look(shot, frame)?;
+        self.take_through(method, &view)
+    }
+
+    /// The same through a view, of objects where they are now.
+    pub fn take_through(&mut self, method: &mut dyn Method, view: &View) -> Result<Take> {
+        let report = self.run(method, view, true)?;
+        let images = self.targets.read_frame(&self.world, view, &report)?;
         self.developed(report, images)
     }
 
     /// Runs one frame as it is timed, without the item buffer; the items are what an earlier frame left.
     pub fn take_timed(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize) -> Result<Take> {
-        let report = self.run(method, shot, frame, false)?;
-        let images = self.targets.read()?;
+        let view = self.look(shot, frame)?;
+        let report = self.run(method, &view, false)?;
+        let images = self.targets.read_frame(&self.world, &view, &report)?;
         self.developed(report, images)
     }
 
@@ -133,17 +145,16 @@ impl Lab {
         shots.iter().enumerate().map(|(frame, shot)| self.take(method, shot, frame)).collect()
     }
 
-    fn run(&mut self, method: &mut dyn Method, shot: &Shot, frame: usize, items: bool) -> Result<FrameReport> {
-        let view = self.look(shot, frame)?;
-        method.prepare(&self.world, &view)?;
-        let target = if items || method.needs_items(&self.world, &view) {
+    fn run(&mut self, method: &mut dyn Method, view: &View, items: bool) -> Result<FrameReport> {
+        method.prepare(&self.world, view)?;
+        let target = if items || method.needs_items(&self.world, view) {
             self.targets.with_items()
         } else {
             self.targets.timed()
         };
         let mut f = self.gpu.frame();
-        method.frame(&mut f, &self.world, &view, &target)?;
-        f.finish().with_context(|| format!("frame {frame}"))
+        method.frame(&mut f, &self.world, view, &target)?;
+        f.finish().with_context(|| format!("frame {}", view.frame))
     }
 
     fn developed(&self, report: FrameReport, images: FrameImages) -> Result<Take> {

@@ -18,6 +18,22 @@ pub enum Measure {
     P95Ms,
     /// Mean time of some of a frame's stages in milliseconds.
     StagesMs(Stages),
+    /// Occlusion queries a frame.
+    Queries,
+    /// Occlusion queries over the time of all frames in seconds, in thousands.
+    ThousandQueriesASecond,
+    /// Changes a frame between drawing and asking.
+    StateChanges,
+    /// Times a frame that the host waits for answers.
+    Waits,
+    /// Objects drawn a frame.
+    Drawn,
+    /// Triangles drawn a frame, in millions.
+    MillionTriangles,
+    /// Triangles drawn, in percent of the scene's.
+    TrianglesPercent,
+    /// Of what was hidden for so many frames and visible before, the share that is hidden in the next frame too, p(t).
+    HiddenAgain(usize),
     /// Objects culled over all, C/N.
     CulledOverTotal,
     /// Objects culled over those that ideal culling culls, C/R.
@@ -91,8 +107,20 @@ impl Measure {
         if matches!(self, Measure::SsimGain | Measure::PsnrGain) {
             return self.gain(ran.warps.get(&place.label)?, ran.warps.get(place.against.as_ref()?)?);
         }
+        if let Measure::HiddenAgain(frames) = self {
+            return ran.hidden.as_ref()?.hidden_again(frames);
+        }
         let method = ran.results.method(&place.label)?;
         match self {
+            Measure::Queries => Some(method.queries_mean),
+            Measure::ThousandQueriesASecond => Some(method.queries_mean / method.frame_ms.mean),
+            Measure::StateChanges => Some(method.state_changes_mean),
+            Measure::Waits => Some(method.waits_mean),
+            Measure::Drawn => Some(method.drawn_mean),
+            Measure::MillionTriangles => Some(method.triangles_mean / 1e6),
+            Measure::TrianglesPercent => {
+                Some(100.0 * method.triangles_mean / ran.results.scene.triangles.max(1) as f64)
+            }
             Measure::FrameMs => Some(method.frame_ms.mean),
             Measure::MedianMs => Some(method.frame_ms.median),
             Measure::P95Ms => Some(method.frame_ms.p95),
@@ -105,7 +133,7 @@ impl Measure {
             Measure::PsnrMean => Some(method.psnr_mean_db.unwrap_or(f64::INFINITY)),
             Measure::PsnrWorst => Some(method.psnr_worst_db.unwrap_or(f64::INFINITY)),
             Measure::PsnrBetween => Some(method.psnr_between_db.get(place.against.as_ref()?)?.unwrap_or(f64::INFINITY)),
-            Measure::SsimGain | Measure::PsnrGain => None,
+            Measure::SsimGain | Measure::PsnrGain | Measure::HiddenAgain(_) => None,
         }
     }
 
@@ -139,7 +167,9 @@ impl Measure {
             Measure::ObjectErrorPercent => small(3),
             Measure::DifferingPixels => small(2),
             Measure::PsnrMean | Measure::PsnrWorst | Measure::PsnrBetween => decimal(value, 1),
-            Measure::SsimGain => format!("{value:.3}"),
+            Measure::SsimGain | Measure::HiddenAgain(_) => format!("{value:.3}"),
+            Measure::Queries | Measure::Drawn => format!("{value:.0}"),
+            Measure::StateChanges | Measure::Waits | Measure::ThousandQueriesASecond => format!("{value:.1}"),
             _ => format!("{value:.2}"),
         }
     }

@@ -6,9 +6,11 @@
 //! ours (`tables/lean.rs`) has no published figures, but goals.
 
 mod eovc;
+mod gems;
 mod goals;
 mod lean;
 mod measure;
+pub mod persistence;
 mod plan;
 mod print;
 #[cfg(test)]
@@ -16,9 +18,11 @@ mod tests;
 mod tog;
 pub mod warp_errors;
 mod woc;
+mod zachmann;
 
 pub use goals::Goals;
 pub use measure::{Measure, Stages};
+pub use persistence::HiddenRuns;
 pub use plan::{Chosen, Place, Plan, PlannedRun};
 pub use print::text;
 
@@ -56,6 +60,8 @@ pub struct Table {
 pub enum Source {
     /// A paper, and the table's number in it.
     Paper(&'static Paper, u32),
+    /// A paper that says it in words, or draws it without figures, in this place; what it says is in the table's notes.
+    Said(&'static Paper, &'static str),
     /// Sightline: no paper has it, and nothing is published to stand beside it.
     Ours {
         /// Names of the scenes that it is run on.
@@ -164,6 +170,8 @@ pub enum Change {
     Speed(f64),
     /// It goes another path.
     Path(&'static str),
+    /// Meshes of procedural scenes are divided so finely (`--detail-level`).
+    Detail(u32),
     /// It needs this, which Sightline does not have: the row stays empty.
     NotYet(&'static str),
 }
@@ -175,6 +183,7 @@ impl Change {
             Change::Size(times) => session.size = session.size.map(|side| (f64::from(side) * times).round() as u32),
             Change::Speed(times) => session.speed *= times,
             Change::Path(name) => session.path = Some(name.to_owned()),
+            Change::Detail(level) => session.detail = level,
             Change::Nothing | Change::NotYet(_) => {}
         }
     }
@@ -185,6 +194,7 @@ impl Change {
             Change::Size(times) => Some(format!("size-{times}x")),
             Change::Speed(times) => Some(format!("speed-{times}x")),
             Change::Path(name) => Some(format!("path-{name}")),
+            Change::Detail(level) => Some(format!("detail-{level}")),
             Change::Nothing | Change::NotYet(_) => None,
         }
     }
@@ -219,6 +229,8 @@ pub struct Ran {
     pub results: Results,
     /// By a warp's label: its errors in each frame that has one before it.
     pub warps: BTreeMap<String, Vec<DepthErrors>>,
+    /// How long what was hidden stayed hidden, if a cell needs it.
+    pub hidden: Option<HiddenRuns>,
 }
 
 /// Every table that can be run again.
@@ -234,6 +246,12 @@ pub const TABLES: &[&Table] = &[
     &tog::TABLE_5,
     &tog::TABLE_6,
     &tog::TABLE_7,
+    &gems::TABLE,
+    &zachmann::BATCHES,
+    &zachmann::CHC,
+    &zachmann::CHC_BATCHES,
+    &zachmann::PERSISTENCE,
+    &zachmann::POLYGONS,
     &lean::TABLE,
 ];
 
@@ -252,6 +270,7 @@ impl Table {
     pub fn name(&self) -> String {
         match self.source {
             Source::Paper(paper, number) => format!("{}, table {number}", paper.name),
+            Source::Said(paper, place) => format!("{}, {place}", paper.name),
             Source::Ours { .. } => format!("Sightline, table {}", self.id),
         }
     }
@@ -259,7 +278,7 @@ impl Table {
     /// The paper that published it.
     pub fn paper(&self) -> Option<&'static Paper> {
         match self.source {
-            Source::Paper(paper, _) => Some(paper),
+            Source::Paper(paper, _) | Source::Said(paper, _) => Some(paper),
             Source::Ours { .. } => None,
         }
     }
@@ -269,6 +288,7 @@ impl Table {
         let is_published = |scene: &&PaperScene| self.published.iter().any(|row| row.scene == scene.name);
         match self.source {
             Source::Paper(paper, _) => paper.scenes.iter().filter(is_published).map(|scene| scene.ours).collect(),
+            Source::Said(paper, _) => paper.scenes.iter().map(|scene| scene.ours).collect(),
             Source::Ours { scenes, .. } => scenes.to_vec(),
         }
     }
@@ -276,7 +296,7 @@ impl Table {
     /// The path where the user names none, and whether a run goes the whole of it.
     pub fn path(&self) -> (&'static str, bool) {
         match self.source {
-            Source::Paper(paper, _) => paper.path,
+            Source::Paper(paper, _) | Source::Said(paper, _) => paper.path,
             Source::Ours { path, .. } => path,
         }
     }
@@ -284,7 +304,7 @@ impl Table {
     /// Frames of the warm-up where the user names no number, if the table has its own.
     pub fn warmup(&self) -> Option<usize> {
         match self.source {
-            Source::Paper(..) => None,
+            Source::Paper(..) | Source::Said(..) => None,
             Source::Ours { warmup, .. } => Some(warmup),
         }
     }
@@ -292,6 +312,11 @@ impl Table {
     /// True if a cell needs the comparison with the truth.
     pub fn needs_truth(&self) -> bool {
         self.columns.iter().flat_map(|column| column.shows).any(|measure| measure.needs_truth())
+    }
+
+    /// True if a cell says how long what is hidden stays hidden.
+    pub fn needs_hidden_runs(&self) -> bool {
+        self.columns.iter().flat_map(|column| column.shows).any(|measure| matches!(measure, Measure::HiddenAgain(_)))
     }
 
     /// Numbers in a row.

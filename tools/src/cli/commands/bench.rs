@@ -18,7 +18,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
     make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
+    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
     let bar = Bar::new(&session)?;
     let options = BenchOptions {
         methods,

@@ -33,8 +33,14 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
     if arguments.frame >= arguments.scene.frames as usize {
         bail!("--frame {}: the run has only {} frames, counted from 0", arguments.frame, arguments.scene.frames);
     }
+    if arguments.samples.samples > 1 && warp_shown(arguments.view).is_some() {
+        bail!(
+            "--samples {}: this view warps depths of one sample a pixel; leave --samples out",
+            arguments.samples.samples
+        );
+    }
     let mut order = order(arguments)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
+    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
     let visible = match entry.id {
         "ref" => Some(RunTruth::visible_sets(&mut session, cache_folder().as_deref(), || ())?),
         _ => None,
@@ -76,7 +82,11 @@ fn order(arguments: &ShotArgs) -> Result<Option<CaptureOrder>> {
 fn picture(session: &mut Session, contender: &mut Contender, arguments: &ShotArgs) -> Result<(Picture, String)> {
     let view = session.look(arguments.frame)?;
     let report = contender.run(session, &view, Watched::Items)?;
-    let images = session.targets.read()?;
+    let images = match arguments.view {
+        // Of several samples a pixel, each: twice as wide and high.
+        Show::Depth | Show::Items => session.targets.read_frame(&session.world, &view, &report)?,
+        _ => session.targets.read()?,
+    };
     let picture = match arguments.view {
         Show::Colour => Picture::colour(&images),
         Show::Depth => Picture::depth(&images, DepthScale::of(&images.depth)),

@@ -18,7 +18,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     let plan = plan(arguments)?;
     make_folder(&arguments.out)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.scene.session()?)?;
+    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
     let bar = ProgressBar::new(1);
     bar.set_style(ProgressStyle::with_template("cell {pos} of {len}  {msg:18} {wide_bar} {eta} left")?);
     let (results, kept) = run_cells(&mut session, &plan, &mut |cell, all, what| {

@@ -6,8 +6,9 @@ use crate::results::files::write_atomically;
 use crate::results::{parts_table, stages_table, Results};
 use crate::run::bench::{bench, header, write, BenchOptions};
 use crate::run::session::{cache_folder, Session, SessionOptions};
+use crate::run::truth::RunTruth;
 use crate::tables::warp_errors::{warp_errors, write_csv};
-use crate::tables::{self, Plan, PlannedRun, Ran, Table};
+use crate::tables::{self, HiddenRuns, Plan, PlannedRun, Ran, Table};
 use anyhow::{bail, Context, Result};
 use culling::warp::Settings;
 use engine::Gpu;
@@ -22,6 +23,12 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
         bail!("--no-metrics: table {id} shows what is culled or wrong, which needs the truth; leave --no-metrics out");
     }
     let plan = table.plan(&arguments.methods.sets())?;
+    if arguments.samples.samples > 1 && plan.runs.iter().any(|run| !run.warps.is_empty()) {
+        bail!(
+            "--samples {}: table {id} warps depths of one sample a pixel; leave --samples out",
+            arguments.samples.samples
+        );
+    }
     let sessions = sessions(table, arguments)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
@@ -33,7 +40,8 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
             let mut session = session.clone();
             planned.change.make(&mut session);
             done += 1;
-            let ran = run_planned(&gpu, arguments, session, planned, (&format!("run {done} of {all}"), warmup))?;
+            let ran =
+                run_planned(&gpu, arguments, session, (table, planned), (&format!("run {done} of {all}"), warmup))?;
             let folder = arguments.out.join(&folder);
             save(&ran, &planned.change.folder().map_or(folder.clone(), |below| folder.join(below)))?;
             explain(arguments, &ran.results)?;
@@ -50,7 +58,7 @@ fn run_planned(
     gpu: &Gpu,
     arguments: &BenchArgs,
     session: SessionOptions,
-    planned: &PlannedRun,
+    (table, planned): (&Table, &PlannedRun),
     (place, warmup): (&str, usize),
 ) -> Result<Ran> {
     let name = format!("{place}: {}", session.scene);
@@ -83,8 +91,16 @@ fn run_planned(
         };
         bench(&mut session, options, &mut progress)?
     };
+    let hidden = match table.needs_hidden_runs() {
+        true => {
+            let cache = cache_folder();
+            let sets = RunTruth::visible_sets(&mut session, cache.as_deref(), || {})?;
+            Some(HiddenRuns::of(&sets))
+        }
+        false => None,
+    };
     bar.clear();
-    Ok(Ran { results, warps })
+    Ok(Ran { results, warps, hidden })
 }
 
 /// Writes what there is: results of methods, errors of warps.
@@ -140,7 +156,7 @@ fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, Session
         if let Some((_, other)) = sessions.iter().find(|(earlier, _)| *earlier == folder) {
             bail!("--scene: {scene} and {} would both be written to the folder {folder}; run them apart", other.scene);
         }
-        let mut session = choice.session_of(scene);
+        let mut session = arguments.samples.of(choice.session_of(scene));
         if session.path.is_none() {
             let (path, whole) = table.path();
             session.path = Some(path.to_owned());

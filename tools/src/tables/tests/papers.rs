@@ -1,6 +1,6 @@
 //! What the papers' texts say of their tables follows from the figures typed here: a mistyped one is found.
 
-use super::super::{eovc, tog, woc, Table};
+use super::super::{eovc, tog, woc, zachmann, Measure, Table};
 
 /// A published number: of a scene, a variant and a column, the first of its cell unless another is asked for.
 fn figure(table: &Table, scene: &str, variant: &str, head: &str, number: usize) -> f64 {
@@ -99,4 +99,19 @@ fn what_tog_2018_says_of_its_tables_follows_from_them() {
     }
     // "AWOC never descends below 30 dB" is not quite what the table says: BL has 28.9 at 16x.
     assert_eq!(figure(&tog::TABLE_7, "BL", "16x", "PSNR", 0), 28.9);
+}
+
+#[test]
+fn the_lectures_curve_is_the_one_that_multiqueries_go_by() {
+    let frames = zachmann::PERSISTENCE.columns.iter().map(|column| match column.shows {
+        [Measure::HiddenAgain(frames)] => *frames as u64,
+        other => panic!("{other:?}"),
+    });
+    for (frames, figure) in frames.zip(zachmann::CURVE) {
+        assert_near(culling::queries::multi::persistence(frames), *figure, 0.000_51, &format!("t={frames}"));
+    }
+    // "450k (some 4 %), hidden: 10M (96 %)".
+    let of = |head: &str| figure(&zachmann::POLYGONS, "PP", "", head, 0);
+    assert_near(of("seen, M") / of("all, M") * 100.0, of("seen, %"), 0.5, "visible polygons");
+    assert_near(of("all, M") - of("seen, M"), 10.0, 1e-9, "hidden polygons");
 }

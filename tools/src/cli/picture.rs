@@ -1,0 +1,38 @@
+//! How large and how fine a picture is.
+
+use crate::run::samples::SAMPLES;
+use crate::run::session::SessionOptions;
+use clap::Args;
+
+/// How finely pixels are drawn.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct SampleChoice {
+    /// Samples a pixel: 1, or 4 for smooth edges. What is culled is then hidden at all of them, and errors are counted by samples
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = parse_samples)]
+    pub samples: u32,
+}
+
+impl SampleChoice {
+    /// A session with so many samples a pixel.
+    pub fn of(self, session: SessionOptions) -> SessionOptions {
+        SessionOptions { samples: self.samples, ..session }
+    }
+}
+
+fn parse_samples(text: &str) -> Result<u32, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(SAMPLES),
+        _ => Err("1 or 4 samples a pixel".to_owned()),
+    }
+}
+
+/// A size in pixels, as in 1280x720.
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let parts =
+        text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    match parts {
+        Some(size) if !size.contains(&0) => Ok(size),
+        _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
+    }
+}
