@@ -2,6 +2,7 @@
 
 use crate::animation::Motion;
 use crate::camera::Camera;
+use crate::cells::Cells;
 use crate::texture::Texture;
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
@@ -103,6 +104,20 @@ pub struct Scene {
     pub motion: Motion,
     /// Where one can walk, if the generator knows.
     pub walk: Option<Walk>,
+    /// What is solid of a city; empty for scenes that are none.
+    pub buildings: Vec<Building>,
+    /// Its rooms and the openings between them, if it has such.
+    pub cells: Option<Cells>,
+}
+
+/// A building of a city. Its object's mesh is closed and encloses the box: who looks at any point of the box from outside the mesh sees the
+/// mesh, not the point. The object is opaque and stays upright where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Building {
+    /// Index into [`Scene::objects`].
+    pub object: u32,
+    /// The box, in object space.
+    pub solid: Aabb,
 }
 
 /// A way along the ground that meets no obstacle.
