@@ -1,43 +1,8 @@
-//! Cells and portals: what a scene says of its rooms and of the openings between them (Zachmann 2008; Luebke & Georges 1995).
+//! Cells and portals (Zachmann 2008; Luebke & Georges 1995): which of them have a meaning.
 
 use crate::error::SceneError;
-use crate::model::{Aabb, Scene};
+use crate::model::{Cell, Cells, Portal, Scene};
 use glam::DVec3;
-
-/// The cells of a scene, and what joins them.
-///
-/// They promise: cells do not overlap. Every face of a cell is closed, but for its portals, by opaque closed meshes that stay where they are,
-/// are no farther than `reach` from the face and reach at least `half_wall` to both sides of it. So whoever is in a cell sees what is beyond only
-/// through portals. Faces of neighbours lie in one plane: the middle of the wall.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cells {
-    /// How thick what closes a face is, to each side, at least; metres.
-    pub half_wall: f64,
-    /// How far what closes a face reaches to each side, at most; metres.
-    pub reach: f64,
-    /// The cells.
-    pub cells: Vec<Cell>,
-    /// The openings.
-    pub portals: Vec<Portal>,
-}
-
-/// A room.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cell {
-    /// Its name.
-    pub name: String,
-    /// The box that it is.
-    pub bounds: Aabb,
-}
-
-/// An opening in the faces between two cells, or to what is outside of all.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Portal {
-    /// The cells that it joins; none is what is outside of all cells.
-    pub cells: [Option<u32>; 2],
-    /// A flat convex polygon around the opening.
-    pub corners: Vec<DVec3>,
-}
 
 impl Portal {
     /// The normal of its plane, of any length.
@@ -114,6 +79,7 @@ fn is_flat_and_convex(portal: &Portal) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Aabb;
 
     fn two_rooms() -> Cells {
         let cell = |name: &str, x: f64| Cell {

@@ -2,7 +2,6 @@
 
 use crate::animation::Motion;
 use crate::camera::Camera;
-use crate::cells::Cells;
 use crate::texture::Texture;
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
@@ -118,6 +117,41 @@ pub struct Building {
     pub object: u32,
     /// The box, in object space.
     pub solid: Aabb,
+}
+
+/// The cells of a scene, and what joins them.
+///
+/// They promise: cells do not overlap. Every face of a cell is closed, but for its portals, by opaque closed meshes that stay where they are,
+/// are no farther than `reach` from the face and reach at least `half_wall` to both sides of it. So whoever is in a cell sees what is beyond only
+/// through portals. Faces of neighbours lie in one plane: the middle of the wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cells {
+    /// How thick what closes a face is, to each side, at least; metres.
+    pub half_wall: f64,
+    /// How far what closes a face reaches to each side, at most; metres.
+    pub reach: f64,
+    /// The cells.
+    pub cells: Vec<Cell>,
+    /// The openings.
+    pub portals: Vec<Portal>,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// Its name.
+    pub name: String,
+    /// The box that it is.
+    pub bounds: Aabb,
+}
+
+/// An opening in the faces between two cells, or to what is outside of all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Portal {
+    /// The cells that it joins; none is what is outside of all cells.
+    pub cells: [Option<u32>; 2],
+    /// A flat convex polygon around the opening.
+    pub corners: Vec<DVec3>,
 }
 
 /// A way along the ground that meets no obstacle.

@@ -2,8 +2,7 @@
 
 use super::document::Document;
 use super::fault::{Fault, Outcome};
-use crate::cells::{Cell, Cells, Portal};
-use crate::model::Aabb;
+use crate::model::{Aabb, Cell, Cells, Portal};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use serde_json::{json, Value};

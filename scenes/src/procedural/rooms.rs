@@ -6,8 +6,7 @@ use super::parts::Parts;
 use super::random::Random;
 use super::{shade, sized, standing, Assembly, SceneOptions};
 use crate::camera::{Camera, Pose, Projection};
-use crate::cells::{Cell, Cells, Portal};
-use crate::model::{Aabb, Mesh, Scene, Walk};
+use crate::model::{Aabb, Cell, Cells, Mesh, Portal, Scene, Walk};
 use glam::DVec3;
 
 /// About how many objects scale 1 has.
