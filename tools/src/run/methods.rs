@@ -4,8 +4,11 @@ use anyhow::{bail, Context, Result};
 use culling::{refusal, Entry, Options, METHODS, PARTICULAR};
 use scenes::Scene;
 
+/// Methods with their settings.
+pub type Chosen = Vec<(&'static Entry, Options)>;
+
 /// Reads `a,b[option=value,…],c` or `all`, and applies `--set`. Each method may come several times with other options.
-pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry, Options)>> {
+pub fn parse_methods(list: &str, sets: &[String]) -> Result<Chosen> {
     let specs =
         if list == "all" { METHODS.iter().map(|entry| entry.id.to_owned()).collect() } else { split_methods(list)? };
     let mut chosen = Vec::new();
@@ -33,7 +36,7 @@ pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry,
 
 /// What `all` means for a scene beside [`parse_methods`]: methods that not every scene can have, with `--set` applied, and a line for each
 /// that this one cannot have.
-pub fn particular_methods(scene: &Scene, sets: &[String]) -> Result<(Vec<(&'static Entry, Options)>, Vec<String>)> {
+pub fn particular_methods(scene: &Scene, sets: &[String]) -> Result<(Chosen, Vec<String>)> {
     let (mut taken, mut left_out) = (Vec::new(), Vec::new());
     for entry in PARTICULAR {
         match refusal(entry, scene) {
