@@ -28,7 +28,7 @@ impl std::fmt::Display for Guarantee {
 pub struct Work {
     /// Occlusion queries issued.
     pub queries: u64,
-    /// Tests of a box against a plane of the view volume, on the host.
+    /// Tests of a box or sphere against a plane of the view volume, where that is all a method does.
     pub plane_tests: u64,
     /// Changes between drawing and testing: runs of one kind.
     pub state_changes: u64,

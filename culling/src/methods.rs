@@ -1,7 +1,8 @@
 //! The list of methods. One line a method.
 
-use crate::{auto, eovc, farthest, frustum, hzb, none, queries, reference, roc, woc};
+use crate::{auto, eovc, farthest, frustum, horizon, hzb, none, portals, queries, reference, roc, woc};
 use crate::{Error, Guarantee, Method, OptionInfo, Options, Result, Setup, World};
+use scenes::Scene;
 
 /// A method that can be chosen.
 #[derive(Debug)]
@@ -36,7 +37,7 @@ impl Entry {
     }
 }
 
-/// Every method, in the order in which `--method all` runs them.
+/// Every method that takes any scene, in the order in which `--method all` runs them.
 pub const METHODS: &[Entry] = &[
     Entry {
         id: "none",
@@ -192,11 +193,41 @@ pub const METHODS: &[Entry] = &[
     },
 ];
 
+/// Methods for scenes that say something particular of themselves, and that refuse all others. `--method all` runs them where they run.
+pub const PARTICULAR: &[Entry] = &[
+    Entry {
+        id: "horizon",
+        title: "the occlusion horizon of cities",
+        source: "Zachmann 2008, culling; Downs, Moeller & Sequin 2001",
+        guarantee: Guarantee::Exact,
+        options: horizon::OPTIONS,
+        make: horizon::make,
+    },
+    Entry {
+        id: "portals",
+        title: "cells and portals: what is seen through openings of openings",
+        source: "Zachmann 2008, culling; Luebke & Georges 1995",
+        guarantee: Guarantee::Exact,
+        options: portals::OPTIONS,
+        make: portals::make,
+    },
+];
+
+/// Why a method refuses a scene; none if it takes it.
+pub fn refusal(entry: &Entry, scene: &Scene) -> Option<Error> {
+    let refused = |method, needs: &str| Some(Error::Missing { method, needs: needs.to_owned() });
+    match entry.id {
+        "horizon" if scene.buildings.is_empty() => refused("horizon", horizon::NEEDS),
+        "portals" if scene.cells.is_none() => refused("portals", portals::NEEDS),
+        _ => None,
+    }
+}
+
 /// The method of that name.
 pub fn find(name: &str) -> Result<&'static Entry> {
-    METHODS.iter().find(|entry| entry.id == name).ok_or_else(|| Error::UnknownMethod {
+    METHODS.iter().chain(PARTICULAR).find(|entry| entry.id == name).ok_or_else(|| Error::UnknownMethod {
         name: name.to_owned(),
-        choices: METHODS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
+        choices: METHODS.iter().chain(PARTICULAR).map(|entry| entry.id).collect::<Vec<_>>().join(", "),
     })
 }
 

@@ -110,6 +110,21 @@ impl WorldBounds {
     pub fn of(&self, mesh: u32, world_from_object: &DAffine3) -> Aabb {
         self.reaches[mesh as usize].transformed(world_from_object)
     }
+
+    /// The box of a mesh in object space; the point at its origin if it has no vertices.
+    ///
+    /// # Panics
+    /// If there is no such mesh.
+    pub fn in_object_space(&self, mesh: u32) -> Aabb {
+        let farthest = &self.reaches[mesh as usize].farthest;
+        let along = |axis: usize, sign: i32| {
+            let mut direction = [0; 3];
+            direction[axis] = sign;
+            farthest[direction_index(direction)]
+        };
+        let ends = |sign: i32| DVec3::new(along(0, sign), along(1, sign), along(2, sign));
+        Aabb { min: -ends(-1), max: ends(1) }
+    }
 }
 
 /// Largest relative error of one row of `column_x * x + column_y * y + column_z * z` on the GPU, in terms of sum |M| |p|.

@@ -39,7 +39,24 @@ impl Scene {
                 return Err(SceneError::BadObject { object: object.name.clone(), fault });
             }
         }
+        self.check_buildings()?;
+        self.check_cells()?;
         self.check_motion()
+    }
+
+    fn check_buildings(&self) -> Result<(), SceneError> {
+        for building in &self.buildings {
+            let Some(object) = self.objects.get(building.object as usize) else {
+                let fault = format!("it is a building, but the scene has {} objects", self.objects.len());
+                return Err(SceneError::BadObject { object: format!("number {}", building.object), fault });
+            };
+            let (solid, mesh) = (building.solid, self.meshes[object.mesh as usize].bounds());
+            if !solid.is_valid() || !mesh.contains(solid.min) || !mesh.contains(solid.max) {
+                let fault = "what is solid of it is no box, or reaches out of its mesh".into();
+                return Err(SceneError::BadObject { object: object.name.clone(), fault });
+            }
+        }
+        Ok(())
     }
 
     fn check_sizes(&self) -> Result<(), SceneError> {

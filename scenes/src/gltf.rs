@@ -10,6 +10,7 @@
 mod accessor;
 mod buffers;
 mod cameras;
+pub(crate) mod cells;
 mod container;
 mod document;
 mod fault;
@@ -84,6 +85,7 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let (nodes_of_cameras, cameras) = cameras.into_iter().unzip();
     let (meshes, textures) = (objects.meshes, objects.materials.textures);
     let mut scene = Scene { name, meshes, objects: objects.objects, textures, cameras, ..Scene::default() };
+    scene.cells = cells::read(&document)?;
     set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
     check_cameras(&scene.cameras)?;
     scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;

@@ -1,6 +1,6 @@
 //! Writes any scene, with a camera path, as one .glb file.
 //!
-//! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, textures, alpha modes, and cameras
+//! Kept exactly: objects in their order, names, transforms (as `f64` matrices), geometry, colours, textures, alpha modes, cells with their portals, and cameras
 //! up to the rounding of their rotation; the import scales normals to length 1, which may change their last bit. Lost or changed:
 //! - A mesh that is used with several colours or surfaces comes back as one mesh for each: in glTF the mesh holds its material.
 //! - A texture of objects whose mesh has no texture coordinates is not drawn, and comes back as none.
@@ -8,7 +8,7 @@
 //! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
 //!   motion, skew is lost.
 //! - The path is the animated camera `path <name>`, 30 keys a second, in `f32`, with the field of view of its first frame.
-//! - The walk is not written.
+//! - The walk is not written, nor what is solid of a city's buildings.
 //!
 //! Skewed and flat matrices are beyond the letter of glTF, which wants matrices made of translation, rotation and scale.
 
@@ -17,6 +17,7 @@ mod motion;
 
 use crate::camera::Projection;
 use crate::error::SceneError;
+use crate::gltf::cells;
 use crate::model::{Mesh, Object, Scene, Surface, Topology};
 use crate::path::CameraPath;
 use crate::texture::{Texture, Wrap};
@@ -52,6 +53,7 @@ pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Re
         export.camera(&camera.name, &camera.projection, node)?;
     }
     export.object_motion(scene, &shots);
+    export.extras = scene.cells.as_ref().map_or(Value::Null, cells::extras);
     export.finish(&scene.name)
 }
 
@@ -76,6 +78,8 @@ struct Export {
     /// The primitive of each scene mesh, without its material; null for empty ones.
     primitives: Vec<Value>,
     material_of: HashMap<MaterialKey, usize>,
+    /// Of the scene; null for none.
+    extras: Value,
     /// glTF mesh by scene mesh and material.
     mesh_of: HashMap<(u32, usize), usize>,
 }
@@ -214,6 +218,9 @@ impl Export {
         });
         if self.roots.is_empty() {
             document["scenes"] = json!([{ "name": name }]);
+        }
+        if !self.extras.is_null() {
+            document["scenes"][0]["extras"] = self.extras;
         }
         let animations = match self.channels.is_empty() {
             true => Vec::new(),

@@ -103,6 +103,55 @@ pub struct Scene {
     pub motion: Motion,
     /// Where one can walk, if the generator knows.
     pub walk: Option<Walk>,
+    /// What is solid of a city; empty for scenes that are none.
+    pub buildings: Vec<Building>,
+    /// Its rooms and the openings between them, if it has such.
+    pub cells: Option<Cells>,
+}
+
+/// A building of a city. Its object's mesh is closed and encloses the box: who looks at any point of the box from outside the mesh sees the
+/// mesh, not the point. The object is opaque and stays upright where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Building {
+    /// Index into [`Scene::objects`].
+    pub object: u32,
+    /// The box, in object space.
+    pub solid: Aabb,
+}
+
+/// The cells of a scene, and what joins them.
+///
+/// They promise: cells do not overlap. Every face of a cell is closed, but for its portals, by opaque closed meshes that stay where they are,
+/// are no farther than `reach` from the face and reach at least `half_wall` to both sides of it. So whoever is in a cell sees what is beyond only
+/// through portals. Faces of neighbours lie in one plane: the middle of the wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cells {
+    /// How thick what closes a face is, to each side, at least; metres.
+    pub half_wall: f64,
+    /// How far what closes a face reaches to each side, at most; metres.
+    pub reach: f64,
+    /// The cells.
+    pub cells: Vec<Cell>,
+    /// The openings.
+    pub portals: Vec<Portal>,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// Its name.
+    pub name: String,
+    /// The box that it is.
+    pub bounds: Aabb,
+}
+
+/// An opening in the faces between two cells, or to what is outside of all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Portal {
+    /// The cells that it joins; none is what is outside of all cells.
+    pub cells: [Option<u32>; 2],
+    /// A flat convex polygon around the opening.
+    pub corners: Vec<DVec3>,
 }
 
 /// A way along the ground that meets no obstacle.

@@ -248,3 +248,65 @@ fn errors_say_what_to_do() {
         assert!(matches!(result, Err(SceneError::Unknown { .. })), "scale {scale}");
     }
 }
+
+/// Where a ray meets a triangle, in lengths of the ray.
+fn meets_triangle(from: DVec3, along: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let normal = (b - a).cross(c - a);
+    let at = (a - from).dot(normal) / along.dot(normal);
+    let point = from + at * along;
+    let inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(point - *p).dot(normal) >= -1e-9);
+    (at.is_finite() && inside).then_some(at)
+}
+
+/// Rays from around a mesh to points in a box that are in the box before they meet the mesh.
+fn rays_into(mesh: &scenes::Mesh, solid: &Aabb) -> usize {
+    let mut state = 7u64;
+    let mut unit = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 33) as f64 / (1u64 << 31) as f64
+    };
+    let mut into = 0;
+    for _ in 0..2_000 {
+        let [x, y, z] = [unit(), unit(), unit()].map(|part| 2.0 * part - 1.0);
+        let from = DVec3::new(x, y, z).normalize() * 4.0;
+        let point = solid.min + (solid.max - solid.min) * DVec3::new(unit(), unit(), unit());
+        let along = point - from;
+        let ends = [(solid.min - from) / along, (solid.max - from) / along];
+        let enters = ends[0].min(ends[1]).max_element();
+        let corners = |triangle: &[u32]| [0, 1, 2].map(|corner| mesh.positions[triangle[corner] as usize].as_dvec3());
+        let first = mesh.indices.chunks_exact(3).filter_map(|triangle| meets_triangle(from, along, corners(triangle)));
+        into += usize::from(first.fold(f64::INFINITY, f64::min) > enters + 1e-6);
+    }
+    into
+}
+
+#[test]
+fn what_is_solid_of_a_building_is_enclosed_by_its_mesh() {
+    for name in ["city-block", "radial-city"] {
+        let scene = make(name, 0.05, 2);
+        assert!(scene.buildings.len() > 20, "{name}: {} buildings", scene.buildings.len());
+        let mut seen = HashSet::new();
+        for building in &scene.buildings {
+            let mesh = scene.objects[building.object as usize].mesh;
+            let mesh = &scene.meshes[mesh as usize];
+            if !seen.insert(&mesh.name) {
+                continue;
+            }
+            assert_eq!(rays_into(mesh, &building.solid), 0, "{name}: '{}' is open", mesh.name);
+            // A box that reaches out is caught, and so is an open mesh.
+            let larger = Aabb { min: building.solid.min - 0.1, max: building.solid.max + 0.1 };
+            assert!(rays_into(mesh, &larger) > 0, "{name}: '{}'", mesh.name);
+        }
+    }
+    assert!(make("rooms", 0.1, 1).buildings.is_empty());
+}
+
+#[test]
+fn buildings_that_are_none_are_refused_by_name() {
+    let mut scene = make("city-block", 0.01, 1);
+    scene.buildings[0].solid.max.y = 7.0;
+    let fault = scene.check().unwrap_err().to_string();
+    assert!(fault.contains("shell") && fault.contains("reaches out of its mesh"), "{fault}");
+    scene.buildings[0].object = 1_000_000;
+    assert!(scene.check().unwrap_err().to_string().contains("number 1000000"));
+}

@@ -5,6 +5,104 @@
 use super::types;
 use crate::contract::*;
 
+/// Against how many planes are objects tested, one plane after the other until they are outside of one? Runs in
+/// frames that count work alone, and decides nothing. Twin: culling/src/frustum/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct CountPlanes {
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// `blocks` in GLSL.
+    pub blocks: BufferRef<u32>,
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `object_meshes` in GLSL.
+    pub object_meshes: BufferRef<u32>,
+    /// `local_boxes` in GLSL.
+    pub local_boxes: BufferRef<types::LocalBox>,
+    /// `planes` in GLSL.
+    pub planes: BufferRef<u32>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `count` in GLSL.
+    pub count: u32,
+    /// Specialization constants.
+    pub constants: CountPlanesConstants,
+}
+
+impl Stage for CountPlanes {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "frustum/count_planes",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/frustum/count_planes.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "blocks", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "objects", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "object_meshes", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "local_boxes", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "planes", binding: 5, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+        ],
+        push_size: 108,
+        constants: &[ConstantInfo { name: "SHAPE", id: 0 }, ConstantInfo { name: "ALL", id: 1 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = CountPlanesPush { view: self.view, count: self.count };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.bounds.into(),
+                self.blocks.into(),
+                self.objects.into(),
+                self.object_meshes.into(),
+                self.local_boxes.into(),
+                self.planes.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![self.constants.shape, u32::from(self.constants.all)],
+        )
+    }
+}
+
+impl ComputeStage for CountPlanes {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CountPlanesPush {
+    view: types::CullView,
+    count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(CountPlanesPush, view) == 0);
+    assert!(std::mem::offset_of!(CountPlanesPush, count) == 104);
+    assert!(size_of::<CountPlanesPush>() == 108);
+};
+
+/// Specialization constants of [`CountPlanes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CountPlanesConstants {
+    /// SHAPE_\*.
+    pub shape: u32,
+    /// Looks at every one of `bounds`, instead of those in blocks in view.
+    pub all: bool,
+}
+
+impl Default for CountPlanesConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { shape: 0, all: false }
+    }
+}
+
 /// Which blocks of objects that lie side by side are not outside the view volume? Only objects of those need
 /// tests of their own: a hierarchy of one level, in the order that the scene came in. The blocks are listed in the order of
 /// atomics, which nothing shows: later stages write by object. Twin: culling/src/frustum/twin.rs.
@@ -125,3 +223,100 @@ const _: () = {
     assert!(std::mem::offset_of!(TestBoundsPush, object_count) == 104);
     assert!(size_of::<TestBoundsPush>() == 108);
 };
+
+/// Which objects are outside the view volume, by the sphere around their world box, by the box of their mesh as
+/// the object turns it, or by the sphere first and the box where that cannot tell (Zachmann, VFC; GPU Gems 29.6.4)? World boxes
+/// alone are frustum/test_bounds. Twin: culling/src/frustum/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct TestShapes {
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
+    /// `kept` in GLSL.
+    pub kept: BufferRef<u32>,
+    /// The blocks in view; objects of others keep what `kept` says.
+    pub blocks: BufferRef<u32>,
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `object_meshes` in GLSL.
+    pub object_meshes: BufferRef<u32>,
+    /// By mesh; looked at by oriented boxes alone.
+    pub local_boxes: BufferRef<types::LocalBox>,
+    /// `view` in GLSL.
+    pub view: types::CullView,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+    /// Specialization constants.
+    pub constants: TestShapesConstants,
+}
+
+impl Stage for TestShapes {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "frustum/test_shapes",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/frustum/test_shapes.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "bounds", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "kept", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "blocks", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "objects", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "object_meshes", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "local_boxes", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Read },
+        ],
+        push_size: 108,
+        constants: &[ConstantInfo { name: "SHAPE", id: 0 }],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TestShapesPush { view: self.view, object_count: self.object_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![
+                self.bounds.into(),
+                self.kept.into(),
+                self.blocks.into(),
+                self.objects.into(),
+                self.object_meshes.into(),
+                self.local_boxes.into(),
+            ],
+            bytemuck::bytes_of(&push),
+            vec![self.constants.shape],
+        )
+    }
+}
+
+impl ComputeStage for TestShapes {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TestShapesPush {
+    view: types::CullView,
+    object_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TestShapesPush, view) == 0);
+    assert!(std::mem::offset_of!(TestShapesPush, object_count) == 104);
+    assert!(size_of::<TestShapesPush>() == 108);
+};
+
+/// Specialization constants of [`TestShapes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestShapesConstants {
+    /// SHAPE_\*.
+    pub shape: u32,
+}
+
+impl Default for TestShapesConstants {
+    /// The values that GLSL gives.
+    fn default() -> Self {
+        Self { shape: 1 }
+    }
+}

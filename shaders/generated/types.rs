@@ -98,6 +98,24 @@ pub const PLACE_RANGE_SHIFT: u32 = 2;
 /// `PLACE_SELECTION_MASK` in GLSL.
 pub const PLACE_SELECTION_MASK: u32 = 3;
 
+/// What is tested: `frustum.test`.
+pub const SHAPE_BOX: u32 = 0;
+
+/// `SHAPE_SPHERE` in GLSL.
+pub const SHAPE_SPHERE: u32 = 1;
+
+/// `SHAPE_ORIENTED` in GLSL.
+pub const SHAPE_ORIENTED: u32 = 2;
+
+/// `SHAPE_SPHERE_BOX` in GLSL.
+pub const SHAPE_SPHERE_BOX: u32 = 3;
+
+/// `SPHERE_ERROR` in GLSL.
+pub const SPHERE_ERROR: f32 = 3.8146973e-6;
+
+/// `ORIENTED_ERROR` in GLSL.
+pub const ORIENTED_ERROR: f32 = 3.8146973e-6;
+
 /// At most so many depth ranges; there is one step more.
 pub const MOST_STEP_RANGES: u32 = 5;
 
@@ -317,6 +335,22 @@ const _: () = {
     assert!(std::mem::offset_of!(FarthestShape, squares_after) == 8);
     assert!(std::mem::offset_of!(FarthestShape, coarsest_square) == 12);
     assert!(size_of::<FarthestShape>() == 16);
+};
+
+/// The box of a mesh in object space, rounded outward.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LocalBox {
+    /// `centre` in GLSL.
+    pub centre: [f32; 3],
+    /// `half_extent` in GLSL.
+    pub half_extent: [f32; 3],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(LocalBox, centre) == 0);
+    assert!(std::mem::offset_of!(LocalBox, half_extent) == 12);
+    assert!(size_of::<LocalBox>() == 24);
 };
 
 /// Where a base colour texture lies among the texels, and where what it covers is not there.

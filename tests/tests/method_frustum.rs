@@ -1,5 +1,7 @@
-//! The laws of `frustum`, and its stage against its twin and the f64 oracle.
+//! The laws of `frustum`, and its stages against their twins and the f64 oracle.
 
+#[path = "method_frustum/shapes.rs"]
+mod shapes;
 #[path = "method_frustum/stage.rs"]
 mod stage;
 

@@ -5,6 +5,8 @@ use culling::frustum::bvh::{walk, Spared};
 use culling::frustum::twin::{clip_from_bounds, farthest_along, footprint_widening, oracle_margin, planes, KEPT_BAND};
 use scenes::bvh::Split;
 use shaders::types::{Bounds, CullView, OBJECT_ALWAYS_KEPT};
+use sightline::run::truth::RunTruth;
+use sightline::run::Contender;
 
 harness::exact_method_tests!("frustum-bvh");
 harness::skipping_method_tests!("frustum-bvh");
@@ -83,13 +85,23 @@ fn it_tests_less_than_one_by_one() {
     }
 }
 
-/// The frame counts them.
+/// Both methods count them, and the hierarchy takes fewer than blocks and objects do.
 #[test]
-fn plane_tests_are_counted() {
+fn it_tests_less_than_frustum() {
     let gpu = gpu();
-    let case = worlds::walled(100);
-    let mut lab = harness::Lab::new(&gpu, &case);
-    let mut method = lab.make(&Subject::named("frustum-bvh"), &Default::default());
-    lab.take(&mut *method, &case.shots[0], 0);
-    assert!(method.work().unwrap().plane_tests > 0);
+    for run in [("city-block", 0.05, "walk"), ("city-block", 0.05, "rotate"), ("rooms", 0.2, "walk")] {
+        let tests = ["frustum", "frustum-bvh"].map(|id| {
+            let mut session = sessions::open(&gpu, run, 8);
+            let entry = culling::find(id).unwrap();
+            let mut contender = Contender::new(&session, entry, entry.default_options(), &None).unwrap();
+            let truth = RunTruth::draw(&mut session, || ()).unwrap();
+            let tests = |frame| {
+                let truth = truth.frame(&mut session, frame).unwrap();
+                contender.measured(&mut session, frame, &truth).unwrap().work.plane_tests
+            };
+            (0..8).map(tests).sum::<u64>()
+        });
+        println!("{run:?}: plane tests of frustum and frustum-bvh {tests:?}");
+        assert!(0 < tests[1] && tests[1] < tests[0], "{run:?}: {tests:?}");
+    }
 }

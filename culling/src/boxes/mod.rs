@@ -189,7 +189,8 @@ pub fn box_view(view: &View) -> BoxView {
     BoxView { view: view.cull(), eye: eye.as_vec4().to_array(), origin: floats(origin), direction: floats(direction) }
 }
 
-fn eye_of(matrix: &DMat4) -> glam::DVec4 {
+/// Where all rays start: a point (w is 1), or, for parallel projections, the direction that they come from (w is 0).
+pub(crate) fn eye_of(matrix: &DMat4) -> glam::DVec4 {
     let [x, y, w] = [matrix.row(0), matrix.row(1), matrix.row(3)];
     let minor = |skip: usize| {
         let part = |row: glam::DVec4| {

@@ -12,12 +12,16 @@ pub fn pixels_per_unit(view: &CullView) -> f32 {
 
 /// The box grown to cover all that its contents can.
 pub fn grown(bounds: &Bounds, view: &CullView) -> Bounds {
-    let clip: ClipBox = clip_from_bounds(bounds, view);
-    let w_max = clip.centre.w + clip.axes.iter().map(|axis| axis.w.abs()).sum::<f32>() + clip.error.w;
-    let wide = if bounds.flags & OBJECT_WIDE_RASTER != 0 { 1.0 } else { 0.0 };
-    let pad = 2.0 * (BOX_PAD_SNAPS * grid_px(view) + wide) * w_max / pixels_per_unit(view);
-    let growth = pad + depth_growth(&clip, view, w_max);
+    let growth = growth(&clip_from_bounds(bounds, view), view, bounds.flags);
     Bounds { half_extent: bounds.half_extent.map(|half| half + growth), ..*bounds }
+}
+
+/// How much a box must grow on every side. Twin of `growth`.
+pub fn growth(clip: &ClipBox, view: &CullView, flags: u32) -> f32 {
+    let w_max = clip.centre.w + clip.axes.iter().map(|axis| axis.w.abs()).sum::<f32>() + clip.error.w;
+    let wide = if flags & OBJECT_WIDE_RASTER != 0 { 1.0 } else { 0.0 };
+    let pad = 2.0 * (BOX_PAD_SNAPS * grid_px(view) + wide) * w_max / pixels_per_unit(view);
+    pad + depth_growth(clip, view, w_max)
 }
 
 fn depth_growth(clip: &ClipBox, view: &CullView, w_max: f32) -> f32 {

@@ -1,7 +1,8 @@
 //! The frustum test in plain Rust, and the f64 oracle that bounds it from below.
 
 use shaders::types::{
-    Bounds, CullView, BLOCK_OBJECTS, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER, SAMPLE_REACH_PX,
+    Bounds, CullView, LocalBox, Object, BLOCK_OBJECTS, CLIP_ERROR, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER,
+    ORIENTED_ERROR, SAMPLE_REACH_PX, SHAPE_BOX, SHAPE_ORIENTED, SHAPE_SPHERE, SPHERE_ERROR,
 };
 
 type Vec4 = glam::Vec4;
@@ -107,6 +108,152 @@ pub fn test_bounds(bounds: &[Bounds], blocks: &[u32], view: &CullView) -> Vec<u3
     let in_view = |object: usize| blocks.contains(&(object as u32 / BLOCK_OBJECTS));
     bounds.iter().enumerate().map(|(object, bound)| u32::from(in_view(object) && kept(bound))).collect()
 }
+
+/// An object as other tests than that of its world box take it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a> {
+    /// Its world box.
+    pub bounds: &'a Bounds,
+    /// Where it is, and how it is turned.
+    pub object: &'a Object,
+    /// The box of its mesh.
+    pub local: &'a LocalBox,
+}
+
+/// The length of a vector of any size. Twin of `length_of`.
+fn length_of(vector: Vec3) -> f32 {
+    let largest = vector.abs().max_element();
+    if largest > 0.0 {
+        largest * (vector / largest).length()
+    } else {
+        0.0
+    }
+}
+
+/// Twin of `sphere_reach`.
+pub fn sphere_reach(half_extent: [f32; 3], plane: Vec4, view: &CullView) -> f32 {
+    let row = [0, 1, 2].map(|column: usize| plane.dot(Vec4::from(view.clip_from_relative[column])));
+    length_of(half_extent.into()) * length_of(row.into()) * (1.0 + SPHERE_ERROR)
+}
+
+/// The box of a mesh as its object turns it. Twin of `clip_from_local`.
+pub fn clip_from_local(object: &Object, local: &LocalBox, view: &CullView) -> ClipBox {
+    let coarse = Vec3::from(object.origin_high) - Vec3::from(view.camera_high);
+    let origin = coarse + (Vec3::from(object.origin_low) - Vec3::from(view.camera_low));
+    let columns = [object.column_x, object.column_y, object.column_z].map(Vec3::from);
+    let clip = view.clip_from_relative.map(Vec4::from);
+    let turned = |by: [f32; 3]| columns[0] * by[0] + columns[1] * by[1] + columns[2] * by[2];
+    let along = |vector: Vec3| clip[0] * vector.x + clip[1] * vector.y + clip[2] * vector.z;
+    let size = Vec3::from(local.centre).abs() + Vec3::from(local.half_extent);
+    let reach = origin.abs() + columns[0].abs() * size.x + columns[1].abs() * size.y + columns[2].abs() * size.z;
+    let sizes = clip[0].abs() * reach.x + clip[1].abs() * reach.y + clip[2].abs() * reach.z + clip[3].abs();
+    ClipBox {
+        centre: along(turned(local.centre) + origin) + clip[3],
+        axes: std::array::from_fn(|axis| along(columns[axis] * local.half_extent[axis])),
+        error: ORIENTED_ERROR * sizes,
+    }
+}
+
+/// True if a box is outside one of the planes, and how many it was tested against. Twin of `outside_by_planes`.
+fn outside_by_planes(clip: &ClipBox, widen: [f32; 2]) -> (bool, u32) {
+    let failed = planes(widen).iter().position(|plane| farthest_along(clip, *plane) < 0.0);
+    (failed.is_some(), failed.map_or(6, |plane| plane as u32 + 1))
+}
+
+/// True if what an object is tested by is outside the view volume, and against how many planes it was tested. Twin of `shape_outside`.
+pub fn shape_outside(shape: u32, of: &Shape<'_>, view: &CullView) -> (bool, u32) {
+    let widen = footprint_widening(of.bounds.flags, view);
+    if shape == SHAPE_ORIENTED {
+        return outside_by_planes(&clip_from_local(of.object, of.local, view), widen);
+    }
+    let clip = clip_from_bounds(of.bounds, view);
+    if shape == SHAPE_BOX {
+        return outside_by_planes(&clip, widen);
+    }
+    let reach = |plane: Vec4| sphere_reach(of.bounds.half_extent, plane, view) + plane.abs().dot(clip.error);
+    let failed = planes(widen).iter().position(|plane| plane.dot(clip.centre) + reach(*plane) < 0.0);
+    let inside = planes(widen).iter().all(|plane| reach(*plane) - plane.dot(clip.centre) <= 0.0);
+    let tested = failed.map_or(6, |plane| plane as u32 + 1);
+    if shape == SHAPE_SPHERE || failed.is_some() || inside {
+        return (failed.is_some(), tested);
+    }
+    let (outside, by_box) = outside_by_planes(&clip, widen);
+    (outside, tested + by_box)
+}
+
+/// Which objects are kept by a test of this shape: 1 or 0 each; those of other blocks than these are not. Twin of
+/// `frustum/test_shapes`.
+pub fn test_shapes(shape: u32, objects: &[Shape<'_>], blocks: &[u32], view: &CullView) -> Vec<u32> {
+    let kept = |of: &Shape<'_>| {
+        let always = of.bounds.flags & OBJECT_ALWAYS_KEPT != 0;
+        let small = || too_small(&clip_from_bounds(of.bounds, view), view);
+        always || !(shape_outside(shape, of, view).0 || small())
+    };
+    let in_view = |object: usize| blocks.contains(&(object as u32 / BLOCK_OBJECTS));
+    objects.iter().enumerate().map(|(object, of)| u32::from(in_view(object) && kept(of))).collect()
+}
+
+/// Against how many planes the objects of some blocks are tested. Twin of `frustum/count_planes`.
+pub fn count_planes(shape: u32, objects: &[Shape<'_>], blocks: &[u32], view: &CullView) -> u32 {
+    let tested = |(object, of): (usize, &Shape<'_>)| {
+        let looked_at = blocks.contains(&(object as u32 / BLOCK_OBJECTS));
+        let always = of.bounds.flags & OBJECT_ALWAYS_KEPT != 0;
+        if looked_at && !always {
+            shape_outside(shape, of, view).1
+        } else {
+            0
+        }
+    };
+    objects.iter().enumerate().map(tested).sum()
+}
+
+/// How far inside the view volume what an object is tested by reaches, in f64 and without rounding, as [`oracle_margin`] says of its
+/// world box. The GPU keeps it from -[`SHAPE_KEPT_BAND`] up and culls it below -[`SHAPE_ROUNDING_BAND`]. Of spheres and boxes together:
+/// the box decides, as it lies in the sphere.
+pub fn shape_margin(shape: u32, of: &Shape<'_>, view: &CullView) -> f64 {
+    let sum =
+        |high: [f32; 3], low: [f32; 3]| glam::DVec3::from(high.map(f64::from)) + glam::DVec3::from(low.map(f64::from));
+    let camera = sum(view.camera_high, view.camera_low);
+    let clip = view.clip_from_relative.map(|column| glam::DVec4::from(column.map(f64::from)));
+    let (middle, axes, size) = match shape {
+        SHAPE_ORIENTED => {
+            let columns = [of.object.column_x, of.object.column_y, of.object.column_z];
+            let columns = columns.map(|column| glam::DVec3::from(column.map(f64::from)));
+            let (centre, half) = (of.local.centre.map(f64::from), of.local.half_extent.map(f64::from));
+            let origin = sum(of.object.origin_high, of.object.origin_low) - camera;
+            let middle = origin + columns[0] * centre[0] + columns[1] * centre[1] + columns[2] * centre[2];
+            let reach = (0..3).map(|axis| columns[axis].abs() * (centre[axis].abs() + half[axis]));
+            let axes = std::array::from_fn(|axis| columns[axis] * half[axis]);
+            (middle, axes, origin.abs() + reach.sum::<glam::DVec3>())
+        }
+        _ => {
+            let middle = sum(of.bounds.centre_high, of.bounds.centre_low) - camera;
+            let half = of.bounds.half_extent.map(f64::from);
+            let axes = [glam::DVec3::X * half[0], glam::DVec3::Y * half[1], glam::DVec3::Z * half[2]];
+            (middle, axes, middle.abs() + glam::DVec3::from(half))
+        }
+    };
+    let margin = |plane: &Vec4| {
+        let plane = plane.as_dvec4();
+        let row = glam::DVec3::new(plane.dot(clip[0]), plane.dot(clip[1]), plane.dot(clip[2]));
+        let parts = (0..3).map(|axis| plane.abs().dot(clip[axis].abs()) * size[axis]).sum::<f64>();
+        let parts = parts + plane.abs().dot(clip[3].abs());
+        let sphere = axes.iter().map(|axis| axis.length_squared()).sum::<f64>().sqrt() * row.length();
+        let (reach, parts) = match shape {
+            SHAPE_SPHERE => (sphere, parts + sphere),
+            _ => (axes.iter().map(|axis| row.dot(*axis).abs()).sum(), parts),
+        };
+        (row.dot(middle) + plane.dot(clip[3]) + reach) / parts.max(f64::MIN_POSITIVE)
+    };
+    planes(footprint_widening(of.bounds.flags, view)).iter().map(margin).fold(f64::INFINITY, f64::min)
+}
+
+/// What of an error bound roundings may use up, and what they may add to it, see `include/shape.glsl`: a box's 32u less 12u (8u of
+/// the dot products, 3u of a sphere's row, rounded up), and an oriented box's 64u with 16u, or a sphere's 64u of its reach with 35u.
+pub const SHAPE_KEPT_BAND: f64 = 20.0 / 16_777_216.0;
+
+/// See [`SHAPE_KEPT_BAND`].
+pub const SHAPE_ROUNDING_BAND: f64 = 99.0 / 16_777_216.0;
 
 /// How far inside the view volume a box reaches, in f64 and without rounding: the least over the planes of the largest
 /// plane value in the box, divided by what such values consist of. Below 0 the box is outside some plane. The GPU keeps

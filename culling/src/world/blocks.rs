@@ -43,6 +43,11 @@ impl Blocks {
         &self.bounds
     }
 
+    /// True if blocks are tested at all.
+    pub(super) fn tested(&self) -> bool {
+        self.useless.is_none()
+    }
+
     pub(super) fn in_view(&self, f: &mut Frame, view: &View) -> BufferRef<u32> {
         let (blocks, block_count) = (self.list.all(), self.bounds.len() as u32);
         match self.useless {

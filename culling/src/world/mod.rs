@@ -5,6 +5,7 @@ mod detail;
 mod drawn;
 mod draws;
 mod order;
+mod solids;
 mod still;
 mod ties;
 pub mod twin;
@@ -13,6 +14,7 @@ mod view;
 
 pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
 pub use drawn::{draw_lists, drawn_by, drawn_objects, Drawn};
+pub use solids::Solid;
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
@@ -24,7 +26,7 @@ use blocks::Blocks;
 use detail::Detail;
 use engine::{Buffer, Faces, Frame, Gpu, Placement, Primitives, Surface};
 use glam::DAffine3;
-use scenes::{Scene, WorldBounds};
+use scenes::{Cells, Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
 use shaders::{draw, frustum, world, BufferRef, ResourceId, Stage};
@@ -90,6 +92,9 @@ struct Host {
     bounds: WorldBounds,
     boxes: Vec<scenes::Aabb>,
     object_meshes: Vec<u32>,
+    /// What is solid of buildings.
+    solids: Vec<Solid>,
+    cells: Option<Cells>,
     /// By object: its mesh in the scene.
     scene_meshes: Vec<u32>,
     /// Objects before the translucent ones.
@@ -163,6 +168,8 @@ impl World {
                 solid_moves: (0..transforms.len())
                     .filter(|at| (object_of_scene[transforms[*at].0 as usize] as usize) < solid)
                     .collect(),
+                solids: solids::solids(scene, &object_of_scene),
+                cells: scene.cells.clone(),
                 object_of_scene,
                 meshes: flat.meshes,
                 indices: flat.indices,
@@ -304,6 +311,11 @@ impl World {
     /// The mesh of each object.
     pub fn object_meshes(&self) -> BufferRef<u32> {
         self.object_meshes.all()
+    }
+
+    /// True if [`World::blocks_in_view`] tests blocks, and does not list all of them.
+    pub fn tests_blocks(&self) -> bool {
+        self.blocks.tested()
     }
 
     /// Where each mesh lies.

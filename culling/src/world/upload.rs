@@ -1,12 +1,14 @@
 //! From a scene's data to the GPU's: order, compression, outward rounding.
 
 use super::order::{order, Placed};
-use super::{split, Range, Shading};
+use super::{split, Range, Shading, World};
 use engine::{Faces, Primitives, Surface};
 use glam::{DAffine3, DVec3, Vec3};
 use scenes::{Aabb, Mesh, Scene, Topology, WorldBounds};
 use shaders::draw::ObjectsVertex;
-use shaders::types::{Bounds, DrawCommand, MeshRange, Object, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC, OBJECT_WIDE_RASTER};
+use shaders::types::{
+    Bounds, DrawCommand, LocalBox, MeshRange, Object, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC, OBJECT_WIDE_RASTER,
+};
 
 /// A scene as the GPU takes it.
 pub(super) struct Flat {
@@ -247,6 +249,24 @@ pub fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
         return Bounds { flags: flags | OBJECT_ALWAYS_KEPT, ..Bounds::default() };
     }
     Bounds { centre_high, centre_low, half_extent: half_extent.to_array(), flags }
+}
+
+impl World {
+    /// The box of each mesh in object space, by the numbers of [`World::object_meshes`].
+    pub fn local_boxes(&self) -> Vec<LocalBox> {
+        let mut boxes = vec![LocalBox::default(); self.host.meshes.len()];
+        for (drawn, mesh) in self.host.object_meshes.iter().zip(&self.host.scene_meshes) {
+            boxes[*drawn as usize] = local_box(&self.host.bounds.in_object_space(*mesh));
+        }
+        boxes
+    }
+}
+
+/// The box of a mesh in object space, rounded outward.
+fn local_box(box_: &Aabb) -> LocalBox {
+    let centre = box_.centre().as_vec3();
+    let half = (box_.max - centre.as_dvec3()).max(centre.as_dvec3() - box_.min);
+    LocalBox { centre: centre.to_array(), half_extent: round_up(half).to_array() }
 }
 
 /// Bounds that reach farther, in metres, are not tested: products with the matrix and sums over axes could leave what f32 holds.

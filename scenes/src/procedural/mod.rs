@@ -23,7 +23,7 @@ mod terrain;
 mod yeahrights;
 
 use crate::camera::{Camera, Pose, Projection};
-use crate::model::{Mesh, Object, Scene, Surface, Walk};
+use crate::model::{Aabb, Building, Mesh, Object, Scene, Surface, Walk};
 use detail::Detail;
 use glam::{DAffine3, DMat3, DVec3};
 use parts::Parts;
@@ -210,6 +210,19 @@ impl Assembly {
             masked: false,
             surface: Surface::default(),
         });
+    }
+
+    /// The object placed last is a building, solid between two corners in object space.
+    fn solid(&mut self, min: [f64; 3], max: [f64; 3]) {
+        let solid = Aabb { min: min.into(), max: max.into() };
+        let object = (self.scene.objects.len() - 1) as u32;
+        self.scene.buildings.push(Building { object, solid });
+    }
+
+    /// No more objects than so many, and no buildings of others.
+    fn cut_off(&mut self, objects: usize) {
+        self.scene.objects.truncate(objects);
+        self.scene.buildings.retain(|building| (building.object as usize) < objects);
     }
 
     /// Makes a mesh at a level of detail and returns its index.

@@ -85,8 +85,8 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     }
     let spoke = Random::new(options.seed, u64::MAX).below(SPOKES);
     let walk = Walk { points: spoke_walk(spoke, edge), length: WALK, clearance: 1.2 };
+    builder.assembly.cut_off(target);
     let mut scene = builder.assembly.scene;
-    scene.objects.truncate(target);
     scene.cameras = vec![camera("spoke", &walk, 0.1, 4.0 * edge + 600.0)];
     scene.walk = Some(walk);
     scene
@@ -194,6 +194,9 @@ impl Builder {
             size.y = if step == 0 { (0.25 * high).min(12.0) } else { (high - foot) / (steps - step) as f64 };
             let mesh = self.random.pick(&[self.meshes.block, self.meshes.slab, self.meshes.tower]);
             self.put(lot, mesh, wall, DVec3::Y * foot, size);
+            // A tower is narrower at its top.
+            let [x, z] = if mesh == self.meshes.tower { [0.479, 0.469] } else { [0.5, 0.5] };
+            self.assembly.solid([-x, 0.0, -z], [x, 1.0, z]);
             // Into the storeys below, so that no two faces lie in one plane.
             foot += size.y - 0.15;
             let narrower = self.random.range(0.6, 0.88);

@@ -6,7 +6,7 @@ use super::parts::Parts;
 use super::random::Random;
 use super::{shade, sized, standing, Assembly, SceneOptions};
 use crate::camera::{Camera, Pose, Projection};
-use crate::model::{Mesh, Scene, Walk};
+use crate::model::{Aabb, Cell, Cells, Mesh, Portal, Scene, Walk};
 use glam::DVec3;
 
 /// About how many objects scale 1 has.
@@ -30,6 +30,8 @@ struct Builder {
     random: Random,
     columns: usize,
     pairs: usize,
+    /// The doorways, by where they are in the middle of the floor and whether they lead along z.
+    doors: Vec<(DVec3, bool)>,
 }
 
 /// Which of the two rows of a pair: before the corridor or behind it.
@@ -49,7 +51,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         [assembly.mesh(doorway("doorway wide", WIDTH as f32)), assembly.mesh(doorway("doorway", DEPTH as f32))];
     let furniture = Furniture::new(&mut assembly);
     let random = Random::new(options.seed, 0);
-    let mut builder = Builder { assembly, furniture, cube, doorways, random, columns, pairs };
+    let mut builder = Builder { assembly, furniture, cube, doorways, random, columns, pairs, doors: Vec::new() };
     for pair in 0..pairs {
         for column in 0..columns {
             builder.random = Random::new(options.seed, (1 + pair * columns + column) as u64);
@@ -60,8 +62,9 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         builder.ends(pair);
     }
     builder.last_row();
-    let walk = builder.walk();
+    let (walk, cells) = (builder.walk(), builder.cells());
     let mut scene = builder.assembly.scene;
+    scene.cells = Some(cells);
     scene.cameras = vec![Camera {
         name: "room".into(),
         // From beside one wall, past the middle of the room, to the doorway to the corridor.
@@ -92,6 +95,13 @@ fn doorway(name: &str, length: f32) -> Mesh {
     }
     parts.cuboid([-0.57, 2.1, -half - 0.025], [0.57, 2.2, half + 0.025]);
     parts.mesh(name)
+}
+
+/// An upright opening that stands on a point, as high as `size.y`, and half as wide as it is in x or z.
+fn opening(cells: [u32; 2], at: DVec3, size: DVec3) -> Portal {
+    let side = DVec3::new(size.x, 0.0, size.z);
+    let up = DVec3::Y * size.y;
+    Portal { cells: cells.map(Some), corners: vec![at - side, at + side, at + side + up, at - side + up] }
 }
 
 impl Builder {
@@ -145,6 +155,7 @@ impl Builder {
     fn long_wall(&mut self, at: DVec3, has_door: bool) {
         let colour = shade(&mut self.random, [0.78, 0.75, 0.68], 0.08);
         if has_door {
+            self.doors.push((at, true));
             self.assembly.place(self.doorways[0], colour, standing(at, 0));
         } else {
             let size = DVec3::new(WIDTH, CEILING + 0.2, WALL);
@@ -156,6 +167,7 @@ impl Builder {
     fn side_wall(&mut self, at: DVec3, has_door: bool) {
         let colour = shade(&mut self.random, [0.72, 0.74, 0.7], 0.08);
         if has_door {
+            self.doors.push((at, false));
             self.assembly.place(self.doorways[1], colour, standing(at, 1));
         } else {
             let size = DVec3::new(WALL, CEILING + 0.2, DEPTH);
@@ -251,6 +263,39 @@ impl Builder {
             let vase = place + DVec3::new(-0.45 * x, 0.742, 0.1 * z);
             self.furniture.place(&mut self.assembly, &mut self.random, self.furniture.vase, standing(vase, 0));
         }
+    }
+
+    /// Rooms and the corridor before each, up to the middles of walls, floors and ceilings; their doorways, and the corridor's open ends.
+    fn cells(&self) -> Cells {
+        let mut cells = Vec::new();
+        let mut portals = Vec::new();
+        for pair in 0..self.pairs {
+            for column in 0..self.columns {
+                let before = self.middle(pair, column, Row::Before);
+                let out = DVec3::new(0.0, 0.0, 0.5 * (DEPTH + CORRIDOR));
+                let spots = [(before, DEPTH), (before + out, CORRIDOR), (before + 2.0 * out, DEPTH)];
+                for ((at, depth), name) in spots.into_iter().zip(["room before", "corridor", "room behind"]) {
+                    let half = DVec3::new(0.5 * WIDTH, 0.0, 0.5 * depth);
+                    let bounds = Aabb { min: at - half - DVec3::Y * 0.1, max: at + half + DVec3::Y * (CEILING + 0.1) };
+                    cells.push(Cell { name: format!("{name} {pair}.{column}"), bounds });
+                }
+                if column > 0 {
+                    let corridor = cells.len() as u32 - 2;
+                    let at = before + out - DVec3::new(0.5 * WIDTH, 0.1, 0.0);
+                    let size = DVec3::new(0.0, CEILING + 0.2, 0.5 * CORRIDOR);
+                    portals.push(opening([corridor - 3, corridor], at, size));
+                }
+            }
+        }
+        for (at, along_z) in &self.doors {
+            let across = if *along_z { DVec3::Z } else { DVec3::X };
+            let holding = |point: DVec3| cells.iter().position(|cell| cell.bounds.contains(point)).unwrap_or(0) as u32;
+            let sides = [-0.5, 0.5].map(|side| holding(*at + DVec3::Y + side * across));
+            // From below the floor to the lintel.
+            portals.push(opening(sides, *at - DVec3::Y * 0.1, DVec3::new(0.5, 2.2, 0.5) * (DVec3::ONE - across)));
+        }
+        // Posts and door frames reach farthest from the middles of walls.
+        Cells { half_wall: 0.5 * WALL - 1e-3, reach: 0.125, cells, portals }
     }
 
     /// Out of a room, along the corridor, into another, and back from room to room.

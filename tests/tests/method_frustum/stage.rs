@@ -9,7 +9,7 @@ use harness::{gpu, Random};
 use scenes::{Pose, Shot};
 use shaders::types::{Bounds, CullView, BLOCK_OBJECTS, OBJECT_ALWAYS_KEPT};
 
-const BOXES: usize = 10_000;
+pub const BOXES: usize = 10_000;
 
 /// Which boxes are kept, of those in `blocks`; others stay 7.
 fn run(gpu: &Gpu, bounds: &[Bounds], blocks: &[u32], view: CullView) -> Vec<u32> {
@@ -44,17 +44,17 @@ fn run_blocks(gpu: &Gpu, bounds: &[Bounds], view: CullView) -> Vec<u32> {
 }
 
 /// A list of some blocks, as stages take it.
-fn list_of(blocks: &[u32]) -> Vec<u32> {
+pub fn list_of(blocks: &[u32]) -> Vec<u32> {
     let header = &listed_blocks(blocks.len() as u32)[..4];
     [header, blocks].concat()
 }
 
-fn all_blocks() -> Vec<u32> {
+pub fn all_blocks() -> Vec<u32> {
     (0..BOXES.div_ceil(BLOCK_OBJECTS as usize) as u32).collect()
 }
 
 /// Boxes around a camera, many of them touching a plane of its view volume to within roundings.
-fn boxes(random: &mut Random, shot: &Shot, view: &View) -> Vec<Bounds> {
+pub fn boxes(random: &mut Random, shot: &Shot, view: &View) -> Vec<Bounds> {
     let world_from_clip = view.clip_from_relative().inverse();
     let any = |random: &mut Random| {
         let clip = glam::DVec4::new(random.range(-1.5, 1.5), random.range(-1.5, 1.5), random.decade(1e-6, 1.5), 1.0);

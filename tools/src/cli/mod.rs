@@ -29,7 +29,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
-use culling::{OptionInfo, Shading, METHODS};
+use culling::{OptionInfo, Shading, METHODS, PARTICULAR};
 use scenes::SceneOptions;
 use std::path::{Path, PathBuf};
 
@@ -163,7 +163,7 @@ impl MethodChoice {
     /// What is set: `--detail` and `--no-skip` for every method that has those options, then each `--set`.
     pub fn sets(&self) -> Vec<String> {
         let all = |option: OptionInfo, value: String| {
-            let having = METHODS.iter().filter(move |entry| entry.options.contains(&option));
+            let having = METHODS.iter().chain(PARTICULAR).filter(move |entry| entry.options.contains(&option));
             having.map(move |entry| format!("{}.{}={value}", entry.id, option.name))
         };
         let detailed = all(DETAIL_OPTION, self.detail.to_string()).filter(|_| self.detail > 0);

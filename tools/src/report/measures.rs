@@ -90,6 +90,11 @@ const WORK: &[Measure] = &[
     measure("queries", "occlusion queries a frame", |_, m| Some(m.queries_mean)),
     measure("state changes", "changes between drawing and testing a frame", |_, m| Some(m.state_changes_mean)),
     measure("waits", "times a frame that the host waited for answers", |_, m| Some(m.waits_mean)),
+    measure(
+        "plane tests",
+        "tests of a box or sphere against a plane of the view volume, by the methods that do no others",
+        |_, m| Some(m.plane_tests_mean),
+    ),
     measure("rays", "rays cast a frame", |_, m| Some(m.rays_mean)),
     measure("boxes", "boxes rasterised a frame to test what is in them", |_, m| Some(m.boxes_mean)),
     measure("node visits", "tree nodes that rays looked at a frame", |_, m| Some(m.node_visits_mean)),

@@ -87,6 +87,7 @@ impl Method {
             ("queries_mean", Some(self.queries_mean)),
             ("state_changes_mean", Some(self.state_changes_mean)),
             ("waits_mean", Some(self.waits_mean)),
+            ("plane_tests_mean", Some(self.plane_tests_mean)),
             ("rays_mean", Some(self.rays_mean)),
             ("boxes_mean", Some(self.boxes_mean)),
             ("node_visits_mean", Some(self.node_visits_mean)),

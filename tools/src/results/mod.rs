@@ -155,6 +155,9 @@ pub struct Method {
     /// Times that the host waited for answers.
     #[serde(default)]
     pub waits_mean: f64,
+    /// Tests of a box or sphere against a plane of the view volume; 0 for methods that do not count them.
+    #[serde(default)]
+    pub plane_tests_mean: f64,
     /// Rays cast.
     pub rays_mean: f64,
     /// Boxes rasterised to test what is in them.

@@ -115,7 +115,7 @@ fn fields_have_the_names_of_the_contract() {
     let fields = "label method options guarantee frame_ms stages false_negatives false_negative_frames \
         object_error_percent differing_pixels_mean psnr_mean_db psnr_worst_db ssim_mean drawn_mean culled_over_total \
         culled_over_ref triangles_mean draws_mean overdraw_mean queries_mean rays_mean device_memory_mib frames \
-        state_changes_mean waits_mean";
+        state_changes_mean waits_mean plane_tests_mean";
     for field in fields.split_whitespace() {
         assert!(method.get(field).is_some(), "{field}");
     }

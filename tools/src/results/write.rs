@@ -118,6 +118,7 @@ const SCALARS: &[(&str, Cell)] = &[
     ("queries_mean", |_, m| measured(m, m.queries_mean)),
     ("state_changes_mean", |_, m| measured(m, m.state_changes_mean)),
     ("waits_mean", |_, m| measured(m, m.waits_mean)),
+    ("plane_tests_mean", |_, m| measured(m, m.plane_tests_mean)),
     ("rays_mean", |_, m| measured(m, m.rays_mean)),
     ("boxes_mean", |_, m| measured(m, m.boxes_mean)),
     ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),

@@ -256,6 +256,7 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         queries_mean: mean(&records.counted(|work| work.queries)),
         state_changes_mean: mean(&records.counted(|work| work.state_changes)),
         waits_mean: mean(&records.counted(|work| work.waits)),
+        plane_tests_mean: mean(&records.counted(|work| work.plane_tests)),
         rays_mean: mean(&records.counted(|work| work.rays)),
         boxes_mean: mean(&records.counted(|work| work.boxes)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),

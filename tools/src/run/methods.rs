@@ -1,10 +1,14 @@
 //! How methods and their options are written on the command line.
 
 use anyhow::{bail, Context, Result};
-use culling::{Entry, Options, METHODS};
+use culling::{refusal, Entry, Options, METHODS, PARTICULAR};
+use scenes::Scene;
+
+/// Methods with their settings.
+pub type Chosen = Vec<(&'static Entry, Options)>;
 
 /// Reads `a,b[option=value,…],c` or `all`, and applies `--set`. Each method may come several times with other options.
-pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry, Options)>> {
+pub fn parse_methods(list: &str, sets: &[String]) -> Result<Chosen> {
     let specs =
         if list == "all" { METHODS.iter().map(|entry| entry.id.to_owned()).collect() } else { split_methods(list)? };
     let mut chosen = Vec::new();
@@ -28,6 +32,19 @@ pub fn parse_methods(list: &str, sets: &[String]) -> Result<Vec<(&'static Entry,
     }
     check_unique(&chosen)?;
     Ok(chosen)
+}
+
+/// What `all` means for a scene beside [`parse_methods`]: methods that not every scene can have, with `--set` applied, and a line for each
+/// that this one cannot have.
+pub fn particular_methods(scene: &Scene, sets: &[String]) -> Result<(Chosen, Vec<String>)> {
+    let (mut taken, mut left_out) = (Vec::new(), Vec::new());
+    for entry in PARTICULAR {
+        match refusal(entry, scene) {
+            None => taken.extend(parse_methods(entry.id, sets)?),
+            Some(refusal) => left_out.push(format!("left out: {refusal}")),
+        }
+    }
+    Ok((taken, left_out))
 }
 
 /// Method, option and value of `METHOD.OPTION=VALUE`; the method must be there.
@@ -96,6 +113,22 @@ mod tests {
             .collect();
         assert_eq!(labels, ["none", "hzb[skip=false]", "hzb[texels=8]"]);
         assert_eq!(parse_methods("all", &[]).unwrap().len(), METHODS.len());
+    }
+
+    #[test]
+    fn all_means_what_the_scene_can_have() {
+        let options = scenes::SceneOptions { scale: 0.01, ..Default::default() };
+        let methods = |scene: &str| {
+            let scene = scenes::open(scene, &options).unwrap();
+            let (taken, left_out) = particular_methods(&scene, &["horizon.skip=false".to_owned()]).unwrap();
+            (taken.iter().map(|(_, options)| options.label()).collect::<Vec<_>>().join(" "), left_out.join("\n"))
+        };
+        let (taken, left_out) = methods("city-block");
+        assert_eq!(taken, "horizon[skip=false]");
+        assert!(left_out.contains("method 'portals' needs cells") && !left_out.contains("horizon"), "{left_out}");
+        let (taken, left_out) = methods("boxes");
+        assert!(taken.is_empty() && left_out.contains("method 'horizon' needs a city"), "{taken}, {left_out}");
+        assert_eq!(methods("rooms").0, "portals");
     }
 
     #[test]

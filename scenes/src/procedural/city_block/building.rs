@@ -97,6 +97,7 @@ impl Builder {
         let size = DVec3::new(house.width, height + 0.3, house.depth);
         let place = sized(house.at - DVec3::new(0.0, 0.3, 0.0), size);
         self.assembly.place(mesh, house.walls, place);
+        self.assembly.solid([-0.5, 0.0, -0.5], [0.5, if house.gabled { 0.75 } else { 1.0 }, 0.5]);
     }
 
     /// Walls that close the gaps between the rows of houses, trees and railings.

@@ -64,8 +64,8 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         builder.houses(at);
         block += 1;
     }
+    builder.assembly.cut_off(target);
     let mut scene = builder.assembly.scene;
-    scene.objects.truncate(target);
     let walk = street_walk(corner, columns, (block / columns).max(1));
     scene.cameras = vec![street_camera(&walk)];
     scene.walk = Some(walk);

@@ -7,7 +7,7 @@ use crate::results::trace;
 use crate::results::{parts_table, stages_table, table, Results};
 use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, Seen};
 use crate::run::capture::CaptureOrder;
-use crate::run::methods::parse_methods;
+use crate::run::methods::{parse_methods, particular_methods};
 use crate::run::session::{cache_folder, Session};
 use anyhow::{bail, Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,10 +15,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Runs the benchmark, writes its files and prints its table.
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
-    let methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
+    let mut methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
     make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
+    if arguments.methods.method == "all" {
+        let (taken, left_out) = particular_methods(&session.scene, &arguments.methods.sets())?;
+        left_out.iter().for_each(|line| eprintln!("{line}"));
+        methods.extend(taken);
+    }
     let bar = Bar::new(&session)?;
     let options = BenchOptions {
         methods,

@@ -8,7 +8,7 @@ use crate::stress::refusals::refusal_faults;
 use crate::stress::run::Failure;
 use crate::stress::{run as run_plan, save, shrink, Outcome, Plan, Subject};
 use anyhow::{bail, Result};
-use culling::{Guarantee, METHODS};
+use culling::{Guarantee, METHODS, PARTICULAR};
 use engine::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -63,6 +63,10 @@ fn plan(arguments: &StressArgs) -> Result<Plan> {
         "all-exact" => exact.collect::<Vec<_>>().join(","),
         methods => methods.to_owned(),
     };
+    if arguments.method == "all-exact" {
+        let ids: Vec<_> = PARTICULAR.iter().map(|entry| entry.id).collect();
+        eprintln!("left out: {}: its worlds are no cities and have no cells", ids.join(", "));
+    }
     let subjects = parse_methods(&methods, &arguments.set)?;
     let subjects = subjects.into_iter().map(|(entry, options)| Subject { options, make: entry.make }).collect();
     let drills = match arguments.case.as_slice() {
