@@ -22,6 +22,7 @@ pub enum Key {
     T,
     B,
     P,
+    R,
     G,
     H,
     F12,
@@ -29,7 +30,7 @@ pub enum Key {
 }
 
 /// Each key, its name, and what it does; what has no words is told with the key before it.
-pub const KEYS: [(Key, &str, &str); 20] = [
+pub const KEYS: [(Key, &str, &str); 21] = [
     (Key::W, "W", "W A S D  fly; drag the mouse to look, wheel for speed"),
     (Key::A, "A", ""),
     (Key::S, "S", ""),
@@ -46,6 +47,7 @@ pub const KEYS: [(Key, &str, &str); 20] = [
     (Key::T, "T", "T        compare with the truth"),
     (Key::B, "B", "B        record a path, or end and save it"),
     (Key::P, "P", "P        save the camera"),
+    (Key::R, "R", "R        reload shaders"),
     (Key::G, "G", "G        next device"),
     (Key::H, "H", "H        show the keys, or hide them"),
     (Key::F12, "F12", "F12      screenshot"),
