@@ -9,7 +9,7 @@ use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
-use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo};
+use shaders::{BindingKind, BoundStage, ShaderKind, StageInfo};
 use std::collections::HashMap;
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
@@ -225,19 +225,6 @@ impl Pipelines {
             unsafe { device.destroy_shader_module(module, None) };
         }
         made
-    }
-
-    fn shader(&self, device: &ash::Device, stage: &StageInfo, module: &ShaderModule) -> Result<vk::ShaderModule> {
-        let built_in = || {
-            module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
-        };
-        let words: Vec<u32> = lock(&self.replaced).words(stage.name, module.kind).unwrap_or_else(built_in);
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources, or what `Gpu::replace_shaders` was
-        // given, whose callers promise the same.
-        let made = unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")?;
-        self.names.give(made, stage.name);
-        Ok(made)
     }
 
     pub(crate) fn destroy(&self, device: &ash::Device) {

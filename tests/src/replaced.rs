@@ -17,50 +17,71 @@ pub fn built_in(stage: &str, kind: ShaderKind) -> NewShader {
 
 /// `example/count_covered` with its comparison turned round: it counts what is not covered.
 pub fn count_uncovered() -> NewShader {
-    const GREATER: u32 = 186;
-    const LESS_OR_EQUAL: u32 = 188;
     let mut shader = built_in("example/count_covered", ShaderKind::Compute);
-    let mut at = 5;
-    while at < shader.words.len() {
-        let [length, operation] = [shader.words[at] >> 16, shader.words[at] & 0xffff];
+    for (at, operation) in operations(&shader.words) {
         if operation == GREATER {
-            shader.words[at] = length << 16 | LESS_OR_EQUAL;
+            shader.words[at] += LESS_OR_EQUAL - GREATER;
         }
-        at += length as usize;
     }
     shader
 }
 
-/// A fragment shader for a stage that writes a colour: all red. Its entry point has a name of four letters; the right one is `main`.
-pub fn red(stage: &str, entry: &[u8; 4]) -> NewShader {
-    let op = |operation: u32, operands: &[u32]| -> Vec<u32> {
-        let first = (operands.len() as u32 + 1) << 16 | operation;
-        std::iter::once(first).chain(operands.iter().copied()).collect()
+/// The fragment shader of a stage that draws colour, with red in place of that.
+pub fn red(stage: &str) -> NewShader {
+    let mut shader = built_in(stage, ShaderKind::Fragment);
+    let words = &mut shader.words;
+    let found = operations(words);
+    let first = |wanted: &dyn Fn(usize, u32) -> bool| {
+        found
+            .iter()
+            .find(|(at, operation)| wanted(*at, *operation))
+            .map(|(at, _)| *at)
+            .unwrap_or_else(|| panic!("{stage}"))
     };
-    let [main, colour, void, function, float, vec4, pointer, one, zero, red, label, bound] =
-        std::array::from_fn(|id| 1 + id as u32);
-    let words = [
-        vec![0x0723_0203, 0x0001_0600, 0, bound, 0],
-        op(17, &[1]),                                              // OpCapability Shader
-        op(14, &[0, 1]),                                           // OpMemoryModel Logical GLSL450
-        op(15, &[4, main, u32::from_le_bytes(*entry), 0, colour]), // OpEntryPoint Fragment
-        op(16, &[main, 7]),                                        // OpExecutionMode OriginUpperLeft
-        op(16, &[main, 9]),                                        // OpExecutionMode EarlyFragmentTests
-        op(71, &[colour, 30, 0]),                                  // OpDecorate Location 0
-        op(19, &[void]),                                           // OpTypeVoid
-        op(33, &[function, void]),                                 // OpTypeFunction
-        op(22, &[float, 32]),                                      // OpTypeFloat
-        op(23, &[vec4, float, 4]),                                 // OpTypeVector
-        op(32, &[pointer, 3, vec4]),                               // OpTypePointer Output
-        op(59, &[pointer, colour, 3]),                             // OpVariable Output
-        op(43, &[float, one, 1.0_f32.to_bits()]),                  // OpConstant
-        op(43, &[float, zero, 0]),                                 // OpConstant
-        op(44, &[vec4, red, one, zero, zero, one]),                // OpConstantComposite
-        op(54, &[void, main, 0, function]),                        // OpFunction
-        op(248, &[label]),                                         // OpLabel
-        op(62, &[colour, red]),                                    // OpStore
-        op(253, &[]),                                              // OpReturn
-        op(56, &[]),                                               // OpFunctionEnd
+    let float = words[first(&|at, operation| operation == TYPE_FLOAT && words[at + 2] == 32) + 1];
+    let vec4 = words[first(&|at, operation| operation == TYPE_VECTOR && words[at + 2..at + 4] == [float, 4]) + 1];
+    let is_output =
+        |id: u32| found.iter().any(|(at, operation)| *operation == VARIABLE && words[at + 2..at + 4] == [id, OUTPUT]);
+    let colour = words[first(&|at, operation| {
+        operation == DECORATE && words[at + 2..at + 4] == [LOCATION, 0] && is_output(words[at + 1])
+    }) + 1];
+    let functions = first(&|_, operation| operation == FUNCTION);
+    let [one, zero, red] = std::array::from_fn(|more| words[3] + more as u32);
+    for (at, operation) in &found {
+        if *operation == STORE && words[at + 1] == colour {
+            words[at + 2] = red;
+        }
+    }
+    words[3] += 3;
+    let constants = [
+        vec![4 << 16 | CONSTANT, float, one, 1.0_f32.to_bits()],
+        vec![4 << 16 | CONSTANT, float, zero, 0],
+        vec![7 << 16 | COMPOSITE, vec4, red, one, zero, zero, one],
     ];
-    NewShader { stage: stage.to_owned(), kind: ShaderKind::Fragment, words: words.concat() }
+    words.splice(functions..functions, constants.concat());
+    shader
+}
+
+/// Numbers in SPIR-V.
+const TYPE_FLOAT: u32 = 22;
+const TYPE_VECTOR: u32 = 23;
+const CONSTANT: u32 = 43;
+const COMPOSITE: u32 = 44;
+const FUNCTION: u32 = 54;
+const VARIABLE: u32 = 59;
+const STORE: u32 = 62;
+const DECORATE: u32 = 71;
+const GREATER: u32 = 186;
+const LESS_OR_EQUAL: u32 = 188;
+const OUTPUT: u32 = 3;
+const LOCATION: u32 = 30;
+
+/// Where each instruction begins, and its operation.
+fn operations(words: &[u32]) -> Vec<(usize, u32)> {
+    let (mut found, mut at) = (Vec::new(), 5);
+    while at < words.len() {
+        found.push((at, words[at] & 0xffff));
+        at += (words[at] >> 16) as usize;
+    }
+    found
 }

@@ -5,6 +5,7 @@ use engine::Gpu;
 use harness::device;
 use harness::replaced::{built_in, red};
 use scenes::{CameraPath, Scene, SceneOptions, Shot};
+use shaders::reload::NewShader;
 use shaders::ShaderKind;
 use sightline::run::session::SessionOptions;
 use sightline::view::camera::FlyCamera;
@@ -80,6 +81,10 @@ fn frozen_lists_show_the_same_objects_to_the_same_eye_and_stay_as_they_are() {
     }
 }
 
+/// What draws the colour of a scene without textures.
+const DRAWING: [&str; 4] =
+    ["draw/objects", "draw/objects_and_items", "draw/objects_and_flags", "draw/objects_items_and_flags"];
+
 /// What R does once shaders are compiled, under methods that leave out what a still view needs no more.
 #[test]
 fn new_shaders_show_before_a_still_camera_and_the_old_ones_again() {
@@ -89,8 +94,9 @@ fn new_shaders_show_before_a_still_camera_and_the_old_ones_again() {
     for entry in METHODS {
         controls.method = METHODS.iter().position(|other| other.id == entry.id).unwrap();
         let mut pictures = Vec::new();
-        for shader in [None, Some(red("draw/objects", b"main")), Some(built_in("draw/objects", ShaderKind::Fragment))] {
-            shader.iter().for_each(|shader| lab.replace_shaders(&[shader.clone()]).unwrap());
+        let all = |shader: &dyn Fn(&str) -> NewShader| DRAWING.map(shader).to_vec();
+        for shaders in [Vec::new(), all(&red), all(&|stage| built_in(stage, ShaderKind::Fragment))] {
+            lab.replace_shaders(&shaders).unwrap();
             (0..3).for_each(|_| drop(shown(&mut lab, &controls, &shot)));
             pictures.push(shown(&mut lab, &controls, &shot));
         }

@@ -4,8 +4,9 @@ use super::{Key, Pipeline, Pipelines};
 use crate::error::Named;
 use crate::lock::lock;
 use crate::{Error, Gpu, Result};
+use ash::vk;
 use shaders::reload::NewShader;
-use shaders::{ShaderKind, StageInfo, STAGES};
+use shaders::{ShaderKind, ShaderModule, StageInfo, STAGES};
 
 /// The first word of SPIR-V.
 const MAGIC: u32 = 0x0723_0203;
@@ -60,6 +61,25 @@ impl Gpu {
 }
 
 impl Pipelines {
+    /// A module of a shader: the one to use now.
+    pub(super) fn shader(
+        &self,
+        device: &ash::Device,
+        stage: &StageInfo,
+        module: &ShaderModule,
+    ) -> Result<vk::ShaderModule> {
+        let built_in = || {
+            module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+        };
+        let words: Vec<u32> = lock(&self.replaced).words(stage.name, module.kind).unwrap_or_else(built_in);
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources, or what `Gpu::replace_shaders` was
+        // given, whose callers promise the same.
+        let made = unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")?;
+        self.names.give(made, stage.name);
+        Ok(made)
+    }
+
     /// Makes all pipelines of these shaders anew, and keeps them if `check` finds no fault. The device is idle.
     fn replace(&self, device: &ash::Device, new: &[NewShader], check: impl FnOnce() -> Result<()>) -> Result<()> {
         let before = lock(&self.replaced).clone();
