@@ -75,8 +75,11 @@ fn an_edit_of_an_include_reaches_every_stage_that_includes_it() {
     let copied = Copied::new("include");
     copied.edit("include/grid.glsl", "#define invocation_index()", "// Changed.\n#define invocation_index()");
     let new = Reloader::new(&copied.0).changed().unwrap();
-    assert!(new.iter().any(|shader| shader.stage == "example/count_covered"));
-    assert!(new.iter().any(|shader| shader.stage == "frustum/test_bounds"));
+    for (stage, includes) in
+        [("example/count_covered", true), ("hzb/reduce_depth", true), ("frustum/test_bounds", false)]
+    {
+        assert_eq!(new.iter().any(|shader| shader.stage == stage), includes, "{stage}");
+    }
 }
 
 #[test]
@@ -96,7 +99,7 @@ fn an_error_names_file_and_line_and_is_found_again_until_it_is_mended() {
 #[test]
 fn what_rust_has_built_in_cannot_change_while_it_runs() {
     for (file, old, new) in [
-        (ROWS, "uvec2 size_px", "uint size_px"),
+        (ROWS, "uvec2 size_px;", "uvec2 size_px; uint more;"),
         (ROWS, "local_size_x = 64", "local_size_x = 32"),
         (ROWS, "binding = 1", "binding = 2"),
         (ROWS, "writeonly buffer", "buffer"),
