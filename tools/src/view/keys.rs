@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(steps[4..6], [Step::Inputs(vec![Input::Look(30.0, -4.5)]), Step::Inputs(vec![Input::Wheel(-2.0)])]);
         assert_eq!(steps[6..9], [Step::Resize([640, 360]), Step::Minimise(true), Step::Minimise(false)]);
         assert_eq!(steps[9..], [Step::Surface, Step::Screenshot("a.png".to_owned())]);
-        for bad in ["R", "+", "+X", "look=3", "size=3", "shot=", "shut=a"] {
+        for bad in ["Z", "+", "+X", "look=3", "size=3", "shot=", "shut=a"] {
             let error = format!("{:#}", parse_steps(bad).unwrap_err());
             assert!(error.contains(&format!("'{bad}' is no step; write key names")), "{error}");
         }
