@@ -112,7 +112,7 @@ fn boxes(left: &mut Left<'_>, show: Show, view: &View, images: &FrameImages) -> 
         None => None,
     };
     let Some(tested) = tested else {
-        *left.caption = "this method tests no boxes; roc, roc-iterative and eovc do".to_owned();
+        *left.caption = "this method keeps no list of tested boxes; roc, eovc and those that query do".to_owned();
         return Ok(picture);
     };
     let tested = match show {
