@@ -145,6 +145,9 @@ def save_targets(controller, title, stages, folder):
         if texture.format.compByteWidth == 4 and texture.format.compCount == 1:
             # Depth: SaveTexture of RenderDoc 1.24 ends the process.
             write_png(path, texture.width, texture.height, grey_of(data))
+        elif texture.format.compByteWidth == 1 and texture.format.compCount == 4:
+            # Without alpha, which SaveTexture keeps whatever it is told: where nothing is drawn it is 0, and viewers show white.
+            write_png(path, texture.width, texture.height, opaque(data, texture.format.BGRAOrder()))
         else:
             save = rd.TextureSave()
             save.resourceId = texture.resourceId
@@ -178,12 +181,23 @@ def grey_of(data):
     return bytes(int(255 * (min(max(value, 0.0), brightest) / brightest) ** 0.5) for value in values)
 
 
-def write_png(path, width, height, grey):
+def opaque(data, is_bgra):
+    """Red, green and blue of four bytes a pixel."""
+    red, blue = (2, 0) if is_bgra else (0, 2)
+    pixels = bytearray(len(data) // 4 * 3)
+    pixels[0::3], pixels[1::3], pixels[2::3] = data[red::4], data[1::4], data[blue::4]
+    return bytes(pixels)
+
+
+def write_png(path, width, height, pixels):
+    """Bytes of grey, or of red, green and blue."""
+    stride = len(pixels) // height
+
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    rows = b"".join(b"\0" + grey[row * width : (row + 1) * width] for row in range(height))
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    rows = b"".join(b"\0" + pixels[row * stride : (row + 1) * stride] for row in range(height))
+    header = struct.pack(">IIBBBBB", width, height, 8, 0 if stride == width else 2, 0, 0, 0)
     with open(path, "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 

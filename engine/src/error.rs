@@ -105,6 +105,14 @@ pub enum Error {
         /// What is missing.
         why: String,
     },
+    /// A shader cannot take the place of the one built in.
+    #[error("stage '{stage}': {fault}; what runs stays as it was")]
+    NewShader {
+        /// The stage it is for.
+        stage: String,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// A frame capture could not be made.
     #[error("RenderDoc: {0}; install renderdoc and run again, or leave --capture out")]
     Capture(String),

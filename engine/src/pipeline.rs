@@ -9,14 +9,16 @@ use crate::recorder::{Faces, Primitives};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
-use shaders::{BindingKind, BoundStage, ShaderKind, ShaderModule, StageInfo};
+use shaders::{BindingKind, BoundStage, ShaderKind, StageInfo};
 use std::collections::HashMap;
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+mod replaced;
 mod vertices;
 
+use replaced::Replaced;
 pub(crate) use vertices::{INSTANCE_BINDING, VERTEX_BINDING};
 
 const ENTRY: &CStr = c"main";
@@ -53,6 +55,8 @@ pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, Pipeline>>,
     layouts: Mutex<HashMap<&'static str, (vk::DescriptorSetLayout, vk::PipelineLayout)>>,
     made_any: Mutex<bool>,
+    /// Shaders to use in place of those built in.
+    replaced: Mutex<Replaced>,
     /// What gathered textures are read with.
     sampler: vk::Sampler,
     cache: vk::PipelineCache,
@@ -79,6 +83,7 @@ impl Pipelines {
             made: Mutex::default(),
             layouts: Mutex::default(),
             made_any: Mutex::new(false),
+            replaced: Mutex::default(),
             cache,
             cache_file,
             info: info.clone(),
@@ -100,16 +105,20 @@ impl Pipelines {
         if let Some(pipeline) = lock(&self.made).get(&key) {
             return Ok(*pipeline);
         }
-        let (set, layout) = self.layout(device, stage.info)?;
-        let raw = match &key.2 {
-            None => self.compute(device, stage, layout)?,
-            Some(state) => self.graphics(device, stage, layout, state)?,
-        };
-        self.names.give(raw, stage.info.name);
-        let pipeline = Pipeline { raw, layout, set, push_stages: stage_flags(stage.info) };
-        *lock(&self.made_any) = true;
+        let pipeline = self.make(device, stage.info, &key)?;
         lock(&self.made).insert(key, pipeline);
         Ok(pipeline)
+    }
+
+    fn make(&self, device: &ash::Device, info: &'static StageInfo, (_, values, draw): &Key) -> Result<Pipeline> {
+        let (set, layout) = self.layout(device, info)?;
+        let raw = match draw {
+            None => self.compute(device, info, values, layout)?,
+            Some(state) => self.graphics(device, info, values, layout, state)?,
+        };
+        self.names.give(raw, info.name);
+        *lock(&self.made_any) = true;
+        Ok(Pipeline { raw, layout, set, push_stages: stage_flags(info) })
     }
 
     fn layout(
@@ -156,10 +165,16 @@ impl Pipelines {
         Ok((set, layout))
     }
 
-    fn compute(&self, device: &ash::Device, stage: &BoundStage, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
-        let constants = Constants::new(stage);
+    fn compute(
+        &self,
+        device: &ash::Device,
+        stage: &StageInfo,
+        values: &[u32],
+        layout: vk::PipelineLayout,
+    ) -> Result<vk::Pipeline> {
+        let constants = Constants::new(stage, values);
         let specialization = constants.info();
-        let module = self.shader(device, stage.info, &stage.info.modules[0])?;
+        let module = self.shader(device, stage, &stage.modules[0])?;
         // A stage whose work group should be one subgroup says so by a constant of this name; the size is then required. It must
         // be right, if slower, whatever subgroups there are: not every device takes a size.
         let mut required = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
@@ -170,7 +185,7 @@ impl Pipelines {
             .module(module)
             .name(ENTRY)
             .specialization_info(&specialization);
-        if has_size && stage.info.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
+        if has_size && stage.constants.iter().any(|constant| constant.name == "SUBGROUP_SIZE") {
             shader_stage =
                 shader_stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut required);
         }
@@ -185,15 +200,16 @@ impl Pipelines {
     fn graphics(
         &self,
         device: &ash::Device,
-        stage: &BoundStage,
+        stage: &StageInfo,
+        values: &[u32],
         layout: vk::PipelineLayout,
         state: &DrawState,
     ) -> Result<vk::Pipeline> {
-        let constants = Constants::new(stage);
+        let constants = Constants::new(stage, values);
         let specialization = constants.info();
         let mut modules = Vec::new();
-        for module in stage.info.modules {
-            modules.push((module.kind, self.shader(device, stage.info, module)?));
+        for module in stage.modules {
+            modules.push((module.kind, self.shader(device, stage, module)?));
         }
         let stages: Vec<_> = modules
             .iter()
@@ -205,22 +221,12 @@ impl Pipelines {
                     .specialization_info(&specialization)
             })
             .collect();
-        let made = draw_pipeline(device, self.cache, stage.info, layout, state, &stages);
+        let made = draw_pipeline(device, self.cache, stage, layout, state, &stages);
         for (_, module) in modules {
             // SAFETY: a module is not needed once the pipeline is made.
             unsafe { device.destroy_shader_module(module, None) };
         }
         made
-    }
-
-    fn shader(&self, device: &ash::Device, stage: &StageInfo, module: &ShaderModule) -> Result<vk::ShaderModule> {
-        let words: Vec<u32> =
-            module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V that the generator compiled and a test holds to its sources.
-        let made = unsafe { device.create_shader_module(&info, None) }.named("vkCreateShaderModule")?;
-        self.names.give(made, stage.name);
-        Ok(made)
     }
 
     pub(crate) fn destroy(&self, device: &ash::Device) {
@@ -339,14 +345,14 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(stage: &BoundStage) -> Self {
+    fn new(stage: &StageInfo, values: &[u32]) -> Self {
         let entry = |(index, constant): (usize, &shaders::ConstantInfo)| vk::SpecializationMapEntry {
             constant_id: constant.id,
             offset: (index * 4) as u32,
             size: 4,
         };
-        let entries = stage.info.constants.iter().enumerate().map(entry).collect();
-        Constants { entries, bytes: bytemuck::cast_slice(&stage.constants).to_vec() }
+        let entries = stage.constants.iter().enumerate().map(entry).collect();
+        Constants { entries, bytes: bytemuck::cast_slice(values).to_vec() }
     }
 
     fn info(&self) -> vk::SpecializationInfo<'_> {

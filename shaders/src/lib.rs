@@ -9,6 +9,7 @@ pub mod contract;
 mod generated;
 #[cfg(feature = "compile")]
 pub mod generator;
+pub mod reload;
 pub mod sources;
 
 pub use contract::*;

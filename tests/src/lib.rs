@@ -11,6 +11,7 @@ pub mod hazards;
 pub mod lab;
 pub mod laws;
 pub mod occludees;
+pub mod replaced;
 pub mod sessions;
 
 pub use device::{gpu, options, Device};

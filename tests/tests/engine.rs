@@ -6,3 +6,5 @@ mod device;
 mod frames;
 #[path = "engine/memory.rs"]
 mod memory;
+#[path = "engine/replaced.rs"]
+mod replaced;

@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+#[path = "tidy/guides.rs"]
+mod guides;
 #[path = "tidy/planted.rs"]
 mod planted;
 
@@ -41,6 +43,11 @@ fn every_stage_has_a_twin_or_says_why_not() {
 #[test]
 fn every_method_has_a_test_and_a_place_in_the_docs() {
     assert_none(methods_apart(root()));
+}
+
+#[test]
+fn guides_tell_of_every_method_and_of_stages_that_there_are() {
+    assert_none(guides::guides_apart(root()));
 }
 
 #[test]

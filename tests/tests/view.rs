@@ -3,7 +3,10 @@
 use culling::{Guarantee, METHODS};
 use engine::Gpu;
 use harness::device;
+use harness::replaced::{built_in, red};
 use scenes::{CameraPath, Scene, SceneOptions, Shot};
+use shaders::reload::NewShader;
+use shaders::ShaderKind;
 use sightline::run::session::SessionOptions;
 use sightline::view::camera::FlyCamera;
 use sightline::view::controls::{Controls, Show};
@@ -75,5 +78,32 @@ fn frozen_lists_show_the_same_objects_to_the_same_eye_and_stay_as_they_are() {
         } else {
             assert!(away != thawed, "{}: from elsewhere, what was culled is not there", entry.id);
         }
+    }
+}
+
+/// What draws the colour of a scene without textures.
+const DRAWING: [&str; 4] =
+    ["draw/objects", "draw/objects_and_items", "draw/objects_and_flags", "draw/objects_items_and_flags"];
+
+/// What R does once shaders are compiled, under methods that leave out what a still view needs no more.
+#[test]
+fn new_shaders_show_before_a_still_camera_and_the_old_ones_again() {
+    let gpu = device::gpu();
+    let (mut lab, mut controls, path) = open(&gpu, "city-block", 0.02);
+    let shot = path.sample(1, FRAMES);
+    for entry in METHODS {
+        controls.method = METHODS.iter().position(|other| other.id == entry.id).unwrap();
+        let mut pictures = Vec::new();
+        let all = |shader: &dyn Fn(&str) -> NewShader| DRAWING.map(shader).to_vec();
+        for shaders in [Vec::new(), all(&red), all(&|stage| built_in(stage, ShaderKind::Fragment))] {
+            lab.replace_shaders(&shaders).unwrap();
+            (0..3).for_each(|_| drop(shown(&mut lab, &controls, &shot)));
+            pictures.push(shown(&mut lab, &controls, &shot));
+        }
+        let is_red = |pixel: &&[u8]| pixel[..3] == [255, 0, 0];
+        let red_pixels = |picture: &[u8]| picture.chunks(4).filter(is_red).count();
+        assert_eq!(red_pixels(&pictures[0]), 0, "{}", entry.id);
+        assert!(red_pixels(&pictures[1]) > 10_000, "{}: {} pixels are red", entry.id, red_pixels(&pictures[1]));
+        assert!(pictures[2] == pictures[0], "{}: the old shader shows something else", entry.id);
     }
 }

@@ -2,7 +2,7 @@
 //! left out can be tested once more against the depth of what it drew, as `woc-exact` does: what then comes up holds all that was missed,
 //! and more. So some of its frames are checked so. Those between are not: that is why `auto` calls itself approximate then.
 
-/// One in so many frames in a row is checked, and the first [`FIRST`].
+/// One in so many frames in a row is checked, and the first `FIRST`.
 pub const EVERY: u32 = 16;
 /// Frames that are checked when it begins. The first of them is not judged: its last frame is long ago.
 const FIRST: u32 = 2;

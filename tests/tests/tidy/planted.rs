@@ -33,6 +33,11 @@ impl Workspace {
         workspace.write("culling/src/methods.rs", "    Entry { id: \"hzb\" },\n    // Entry { id: \"gone\" },\n");
         workspace.write("culling/README.md", "| `hzb` |");
         workspace.write("tests/tests/method_hzb.rs", "");
+        workspace.write(
+            "culling/docs/hzb.md",
+            "`hzb`: `hzb/test:late` (`a/b.rs`)\n```sh\n`no/stage`\n```\n![One](hzb.png)\n",
+        );
+        workspace.write("culling/docs/hzb.png", "");
         workspace
     }
 
@@ -57,6 +62,7 @@ impl Workspace {
             forbidden_edges,
             unsafe_outside_the_engine,
             module_circles,
+            guides::guides_apart,
         ];
         laws.iter().flat_map(|law| law(&self.0)).collect()
     }
@@ -100,6 +106,15 @@ fn methods_without_test_or_docs_are_caught() {
     let empty = Workspace::tidy("no-registry");
     empty.write("culling/src/methods.rs", "");
     assert!(methods_apart(&empty.0)[0].contains("no method found"));
+}
+
+#[test]
+fn guides_that_tell_of_what_is_not_there_are_caught() {
+    let guide = |text: &'static str| move |w: &Workspace| w.write("culling/docs/hzb.md", text);
+    planted("no-guide", "method `hzb` is in no guide", guide("hzb ![One](hzb.png)"));
+    planted("no-stage", "hzb.md: there is no stage `hzb/tests`", guide("`hzb` `hzb/tests:late` ![One](hzb.png)"));
+    planted("no-picture", "hzb.md: there is no picture two.png", guide("`hzb` ![One](hzb.png) ![Two](two.png)"));
+    planted("no-use", "hzb.png: no guide shows it", guide("`hzb` (hzb.png)"));
 }
 
 #[test]

@@ -5,7 +5,8 @@ mod events;
 use super::camera::FlyCamera;
 use super::controls::{Command, Controls};
 use super::keys::{Input, Step};
-use super::lab::Lab;
+use super::lab::{is_lost, Lab};
+use super::reload::HotShaders;
 use super::text::Text;
 use super::ViewOptions;
 use super::{hud, saved, LONGEST_STEP, SCRIPTED_FRAME_S};
@@ -42,6 +43,7 @@ pub struct App {
     stage: Option<Stage>,
     window: Option<Arc<Window>>,
     controls: Option<Controls>,
+    hot_shaders: HotShaders,
     path_frame: usize,
     seconds: f64,
     recorded: Vec<Shot>,
@@ -67,6 +69,7 @@ impl App {
             stage: None,
             window: None,
             controls: None,
+            hot_shaders: HotShaders::default(),
             path_frame: 0,
             seconds: 0.0,
             recorded: Vec::new(),
@@ -124,7 +127,8 @@ impl App {
         shown.show(&black, &panels, wanted)?;
         let scene = self.scene.take().context("the scene is gone")?;
         let options = SessionOptions { size, ..self.wish.session.clone() };
-        let lab = Lab::new(&gpu, scene, options, self.wish.methods.clone())?;
+        let mut lab = Lab::new(&gpu, scene, options, self.wish.methods.clone())?;
+        self.hot_shaders.put_on(&mut lab)?;
         if self.controls.is_none() {
             let first = lab.session.path().sample(0, lab.session.frames());
             self.seconds = first.seconds;
@@ -254,6 +258,11 @@ impl App {
                 Ok(())
             }
             Some(Command::Screenshot) => self.screenshot(None),
+            Some(Command::ReloadShaders) => {
+                let stage = self.stage.as_mut().context("there is no device yet")?;
+                let told = self.hot_shaders.reload(&mut stage.lab)?;
+                self.tell(told)
+            }
             Some(Command::NextDevice) => self.next_device(),
             Some(Command::SaveCamera) => {
                 let stage = self.stage.as_ref().context("there is no scene yet")?;
@@ -306,14 +315,6 @@ impl App {
             event_loop.exit();
         }
     }
-}
-
-fn is_lost(error: &anyhow::Error) -> bool {
-    let lost = |error: &engine::Error| matches!(error, engine::Error::DeviceLost { .. });
-    error.chain().any(|cause| {
-        cause.downcast_ref::<engine::Error>().is_some_and(lost)
-            || matches!(cause.downcast_ref::<culling::Error>(), Some(culling::Error::Engine(inner)) if lost(inner))
-    })
 }
 
 /// The camera as it is flown: with the path's lens.

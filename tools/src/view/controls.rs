@@ -77,6 +77,8 @@ pub enum Command {
     SaveRecording,
     /// Save what the window shows.
     Screenshot,
+    /// Run with shaders as their sources are now.
+    ReloadShaders,
     /// Go on with the next device.
     NextDevice,
     /// Close the window.
@@ -190,6 +192,7 @@ impl Controls {
                 return (!self.recording).then_some(Command::SaveRecording);
             }
             Key::P => return Some(Command::SaveCamera),
+            Key::R => return Some(Command::ReloadShaders),
             Key::G => return Some(Command::NextDevice),
             Key::F12 => return Some(Command::Screenshot),
             Key::Escape => return Some(Command::Quit),

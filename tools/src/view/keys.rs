@@ -22,6 +22,7 @@ pub enum Key {
     T,
     B,
     P,
+    R,
     G,
     H,
     F12,
@@ -29,7 +30,7 @@ pub enum Key {
 }
 
 /// Each key, its name, and what it does; what has no words is told with the key before it.
-pub const KEYS: [(Key, &str, &str); 20] = [
+pub const KEYS: [(Key, &str, &str); 21] = [
     (Key::W, "W", "W A S D  fly; drag the mouse to look, wheel for speed"),
     (Key::A, "A", ""),
     (Key::S, "S", ""),
@@ -46,6 +47,7 @@ pub const KEYS: [(Key, &str, &str); 20] = [
     (Key::T, "T", "T        compare with the truth"),
     (Key::B, "B", "B        record a path, or end and save it"),
     (Key::P, "P", "P        save the camera"),
+    (Key::R, "R", "R        reload shaders"),
     (Key::G, "G", "G        next device"),
     (Key::H, "H", "H        show the keys, or hide them"),
     (Key::F12, "F12", "F12      screenshot"),
@@ -158,7 +160,7 @@ mod tests {
         assert_eq!(steps[4..6], [Step::Inputs(vec![Input::Look(30.0, -4.5)]), Step::Inputs(vec![Input::Wheel(-2.0)])]);
         assert_eq!(steps[6..9], [Step::Resize([640, 360]), Step::Minimise(true), Step::Minimise(false)]);
         assert_eq!(steps[9..], [Step::Surface, Step::Screenshot("a.png".to_owned())]);
-        for bad in ["R", "+", "+X", "look=3", "size=3", "shot=", "shut=a"] {
+        for bad in ["Z", "+", "+X", "look=3", "size=3", "shot=", "shut=a"] {
             let error = format!("{:#}", parse_steps(bad).unwrap_err());
             assert!(error.contains(&format!("'{bad}' is no step; write key names")), "{error}");
         }

@@ -1,27 +1,21 @@
 //! A scene under a method, frame by frame: what the window shows, without the window.
 
 use super::controls::{Controls, Show};
-use super::pictures::{self, Warping};
+use super::pictures::{self, Left, Ran, Warping};
 use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
 use crate::pictures::png_out::Picture;
 use crate::run::session::{Session, SessionOptions};
 use crate::run::truth::draw_all_of;
 use crate::run::{Contender, Watched};
 use anyhow::{Context, Result};
-use culling::{drawn_objects, Drawn, Entry, Options, View, VisibleSets};
-use engine::{Format, FrameReport, Gpu, Image};
+use culling::{drawn_objects, Entry, Options, View, VisibleSets};
+use engine::{Format, Gpu, Image};
 use scenes::{Scene, Shot};
+use shaders::reload::NewShader;
 use std::sync::Arc;
 
 /// One frame in so many is run with stage timers, and its lists are read back: both make it slower.
 const WATCH_EVERY: u64 = 8;
-
-/// What ran last, and what it drew.
-pub(super) struct Ran {
-    pub(super) view: View,
-    pub(super) report: FrameReport,
-    pub(super) drawn: Option<Drawn>,
-}
 
 /// What is known of the method that runs, each as of when it was last measured.
 #[derive(Default)]
@@ -44,9 +38,9 @@ pub struct Lab {
     methods: Vec<(&'static Entry, Options)>,
     /// Its place among the methods; none: no culling.
     running: Option<(Option<usize>, Contender)>,
-    pub(super) ran: Option<Ran>,
-    pub(super) truth: Option<Truth>,
-    pub(super) warping: Option<Warping>,
+    ran: Option<Ran>,
+    truth: Option<Truth>,
+    warping: Option<Warping>,
     pub(super) known: Known,
     composed: Option<Image>,
     frames: u64,
@@ -94,6 +88,13 @@ impl Lab {
         Ok(self.running.as_mut().map_or(Ok(()), |(_, contender)| contender.method.forget())?)
     }
 
+    /// Draws with these shaders from now on. On an error all stay as they were.
+    pub fn replace_shaders(&mut self, new: &[NewShader]) -> Result<()> {
+        self.session.gpu.replace_shaders(new)?;
+        // A method before a still camera would leave its stages out.
+        self.forget()
+    }
+
     /// The method that runs, by its label.
     pub fn label(&self) -> String {
         self.running.as_ref().map_or(String::new(), |(_, contender)| contender.label())
@@ -102,6 +103,18 @@ impl Lab {
     /// The method that runs.
     pub(super) fn contender(&self) -> Option<&Contender> {
         self.running.as_ref().map(|(_, contender)| contender)
+    }
+
+    /// What views are made of.
+    fn left(&mut self) -> Left<'_> {
+        Left {
+            session: &mut self.session,
+            contender: self.running.as_ref().map(|(_, contender)| contender),
+            ran: self.ran.as_ref(),
+            truth: self.truth.as_ref(),
+            warping: &mut self.warping,
+            caption: &mut self.known.caption,
+        }
     }
 
     /// Draws one frame as the controls have it; [`Lab::picture`] is then what to show.
@@ -143,14 +156,14 @@ impl Lab {
             return Ok(None);
         }
         let images = self.session.targets.read()?;
-        let picture = pictures::of(self, controls, &view, &images)?;
+        let picture = pictures::of(&mut self.left(), controls, &view, &images)?;
         if needs_truth {
             self.compare(&view, &images)?;
         } else {
             (self.truth, self.known.error) = (None, None);
         }
         let picture = match controls.show {
-            Show::FalsePositives => pictures::false_positives(self, &view, &images),
+            Show::FalsePositives => pictures::false_positives(&mut self.left(), &view, &images),
             _ => picture,
         };
         Ok(Some(picture))
@@ -168,8 +181,8 @@ impl Lab {
         f.finish().context("drawing frozen lists")?;
         let images = self.session.targets.read()?;
         let mut picture = match controls.show {
-            Show::FalsePositives => pictures::false_positives(self, &eye, &images),
-            _ => pictures::of(self, controls, &eye, &images)?,
+            Show::FalsePositives => pictures::false_positives(&mut self.left(), &eye, &images),
+            _ => pictures::of(&mut self.left(), controls, &eye, &images)?,
         };
         crate::pictures::boxes_view::draw_view(&mut picture, &self.session, &eye, seen);
         Ok(picture)
@@ -247,4 +260,13 @@ impl Lab {
         self.composed = Some(image);
         Ok(())
     }
+}
+
+/// True if the device stopped answering.
+pub(super) fn is_lost(error: &anyhow::Error) -> bool {
+    let lost = |error: &engine::Error| matches!(error, engine::Error::DeviceLost { .. });
+    error.chain().any(|cause| {
+        cause.downcast_ref::<engine::Error>().is_some_and(lost)
+            || matches!(cause.downcast_ref::<culling::Error>(), Some(culling::Error::Engine(inner)) if lost(inner))
+    })
 }

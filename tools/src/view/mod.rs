@@ -10,6 +10,7 @@ mod hud;
 pub mod keys;
 pub mod lab;
 mod pictures;
+mod reload;
 mod saved;
 mod text;
 

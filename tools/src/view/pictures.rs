@@ -1,18 +1,18 @@
 //! The views of a frame beyond its picture: made of what the frame left, as `shot` makes them.
 
 use super::controls::{Controls, Show};
-use super::lab::Lab;
-use crate::measures::metrics::FrameImages;
+use crate::measures::metrics::{FrameImages, Truth};
 use crate::pictures::boxes_view::{self, dimmed};
 use crate::pictures::lines::{corners, draw_edges, Pen};
 use crate::pictures::png_out::{DepthScale, Picture};
 use crate::pictures::warp_view::Warped;
-use crate::run::fragment_counts;
+use crate::run::session::Session;
+use crate::run::{fragment_counts, Contender};
 use anyhow::{Context, Result};
 use culling::farthest::{self, hom, FarthestMap, MapKind, Structure};
 use culling::warp::{Settings, Warp, OPTIONS};
-use culling::{Options, TestedBoxes, View};
-use engine::{Buffer, Placement};
+use culling::{Drawn, Options, TestedBoxes, View};
+use engine::{Buffer, FrameReport, Placement};
 use shaders::types::PyramidLevel;
 
 const IN_VAIN: Pen = Pen { colour: [255, 90, 60], cover: 0.6, width: 1 };
@@ -25,54 +25,72 @@ pub(super) struct Warping {
     warped: Buffer<f32>,
 }
 
+/// What ran last, and what it drew.
+pub(super) struct Ran {
+    pub(super) view: View,
+    pub(super) report: FrameReport,
+    pub(super) drawn: Option<Drawn>,
+}
+
+/// What a frame left, of which views are made.
+pub(super) struct Left<'a> {
+    pub(super) session: &'a mut Session,
+    pub(super) contender: Option<&'a Contender>,
+    pub(super) ran: Option<&'a Ran>,
+    pub(super) truth: Option<&'a Truth>,
+    pub(super) warping: &'a mut Option<Warping>,
+    /// What there is to say of the view.
+    pub(super) caption: &'a mut String,
+}
+
 /// The picture that the controls ask for of a frame that was just drawn, and what there is to say of it.
-pub(super) fn of(lab: &mut Lab, controls: &Controls, view: &View, images: &FrameImages) -> Result<Picture> {
+pub(super) fn of(left: &mut Left<'_>, controls: &Controls, view: &View, images: &FrameImages) -> Result<Picture> {
     let warps = matches!(controls.show, Show::Motion | Show::WarpError);
     if !warps {
-        lab.warping = None;
+        *left.warping = None;
     }
     match controls.show {
         Show::Colour | Show::FalsePositives => Ok(Picture::colour(images)),
         Show::Depth => Ok(Picture::depth(images, DepthScale::of(&images.depth))),
         Show::Items => Ok(Picture::items(images)),
-        Show::Overdraw => overdraw(lab, view, images),
-        Show::Farthest => farthest_level(lab, controls.level, images),
-        Show::Groups | Show::Boxes => boxes(lab, controls.show, view, images),
+        Show::Overdraw => overdraw(left, view, images),
+        Show::Farthest => farthest_level(left, controls.level, images),
+        Show::Groups | Show::Boxes => boxes(left, controls.show, view, images),
         Show::Motion | Show::WarpError if controls.frozen => {
-            lab.known.caption = "not while culling is frozen: there is no frame before".to_owned();
+            *left.caption = "not while culling is frozen: there is no frame before".to_owned();
             Ok(Picture::colour(images))
         }
-        Show::Motion | Show::WarpError => warped(lab, controls.show, view, images),
+        Show::Motion | Show::WarpError => warped(left, controls.show, view, images),
     }
 }
 
-fn overdraw(lab: &mut Lab, view: &View, images: &FrameImages) -> Result<Picture> {
-    let ran = lab.ran.as_ref().context("nothing was drawn yet")?;
-    let counts = fragment_counts(&mut lab.session, view, &ran.report)?;
+fn overdraw(left: &mut Left<'_>, view: &View, images: &FrameImages) -> Result<Picture> {
+    let ran = left.ran.context("nothing was drawn yet")?;
+    let counts = fragment_counts(left.session, view, &ran.report)?;
     let most = counts.iter().max().copied().unwrap_or(0);
-    lab.known.caption = format!("blue 1, green 4, yellow 8, red 16, white 32; most here {most}");
+    *left.caption = format!("blue 1, green 4, yellow 8, red 16, white 32; most here {most}");
     Ok(Picture::overdraw(images.width, images.height, &counts))
 }
 
 /// The map that the method keeps, or a pyramid for one that keeps none, made of this frame's depth.
-fn farthest_level(lab: &mut Lab, level: u32, images: &FrameImages) -> Result<Picture> {
+fn farthest_level(left: &mut Left<'_>, level: u32, images: &FrameImages) -> Result<Picture> {
     let size = [images.width, images.height];
-    let options = lab.contender().map(|contender| contender.options.clone());
+    let options = left.contender.map(|contender| contender.options.clone());
     let has_map = |options: &Options| options.known().iter().any(|info| info.name == hom::STRUCTURE_OPTION.name);
     let kind = match options.filter(has_map) {
         Some(options) => hom::map_kind(&options),
         None => MapKind { structure: Structure::Mip, reduction: 0 },
     };
-    let map = FarthestMap::new(&lab.session.gpu, size, kind)?;
-    let mut f = lab.session.gpu.frame();
-    map.fill_from_depth(&mut f, &lab.session.targets.timed());
+    let map = FarthestMap::new(&left.session.gpu, size, kind)?;
+    let mut f = left.session.gpu.frame();
+    map.fill_from_depth(&mut f, &left.session.targets.timed());
     map.build(&mut f);
     f.finish().context("building the farthest-depth map")?;
     let levels: Vec<PyramidLevel> =
         farthest::layout(size, kind).0.into_iter().filter(|level| level.width > 0 && level.height > 0).collect();
     let place = level as usize % levels.len().max(1);
     let PyramidLevel { first, width, height } = levels[place];
-    lab.known.caption = format!(
+    *left.caption = format!(
         "{:?}, level {place} of {} (L): {width}x{height} texels, of this frame's depth",
         kind.structure,
         levels.len()
@@ -87,28 +105,28 @@ fn farthest_level(lab: &mut Lab, level: u32, images: &FrameImages) -> Result<Pic
     Ok(Picture { width: images.width, height: images.height, pixels: pixels.collect() })
 }
 
-fn boxes(lab: &mut Lab, show: Show, view: &View, images: &FrameImages) -> Result<Picture> {
+fn boxes(left: &mut Left<'_>, show: Show, view: &View, images: &FrameImages) -> Result<Picture> {
     let picture = Picture::colour(images);
-    let tested = match lab.contender() {
-        Some(contender) => contender.method.tested_boxes(&lab.session.world)?,
+    let tested = match left.contender {
+        Some(contender) => contender.method.tested_boxes(&left.session.world)?,
         None => None,
     };
     let Some(tested) = tested else {
-        lab.known.caption = "this method tests no boxes; roc, roc-iterative and eovc do".to_owned();
+        *left.caption = "this method keeps no list of tested boxes; roc, eovc and those that query do".to_owned();
         return Ok(picture);
     };
     let tested = match show {
         Show::Groups => TestedBoxes { singles: Vec::new(), ..tested },
         _ => tested,
     };
-    lab.known.caption = boxes_view::caption(&tested);
+    *left.caption = boxes_view::caption(&tested);
     Ok(boxes_view::first_person(&picture, view, &tested))
 }
 
 /// Warps the frame before to this one, and keeps this one for the next.
-fn warped(lab: &mut Lab, show: Show, view: &View, images: &FrameImages) -> Result<Picture> {
-    let session = &lab.session;
-    let mut warping = match lab.warping.take() {
+fn warped(left: &mut Left<'_>, show: Show, view: &View, images: &FrameImages) -> Result<Picture> {
+    let session = &*left.session;
+    let mut warping = match left.warping.take() {
         Some(warping) => warping,
         None => {
             let settings = Settings { stored: true, ..Settings::of(&Options::new("warp", OPTIONS)) };
@@ -119,7 +137,7 @@ fn warped(lab: &mut Lab, show: Show, view: &View, images: &FrameImages) -> Resul
         }
     };
     let mut picture = Picture::colour(images);
-    lab.known.caption = "from the next frame on: a warp starts from the frame before".to_owned();
+    *left.caption = "from the next frame on: a warp starts from the frame before".to_owned();
     if warping.warp.has_last() {
         let mut f = session.gpu.frame();
         warping.warp.frame(&mut f, &session.world, view, warping.warped.all())?;
@@ -127,25 +145,25 @@ fn warped(lab: &mut Lab, show: Show, view: &View, images: &FrameImages) -> Resul
         let stages = stages.into_iter().map(|stage| (stage.label, stage.ms)).collect();
         let warped = Warped::of(&warping.warp, &warping.warped, warping.settings, images, stages)?;
         picture = if show == Show::Motion { warped.motion() } else { warped.error() };
-        lab.known.caption = warped.caption()?;
+        *left.caption = warped.caption()?;
     }
     let mut f = session.gpu.frame();
     warping.warp.keep(&mut f, &session.world, view, &session.targets.with_items());
     f.finish().context("keeping a frame's depth")?;
-    lab.warping = Some(warping);
+    *left.warping = Some(warping);
     Ok(picture)
 }
 
 /// The frame, dimmed, with the bounds of what was drawn but owns no pixel, and of what owns one but was not drawn.
-pub(super) fn false_positives(lab: &mut Lab, view: &View, images: &FrameImages) -> Picture {
+pub(super) fn false_positives(left: &mut Left<'_>, view: &View, images: &FrameImages) -> Picture {
     let mut picture = dimmed(&Picture::colour(images));
-    let drawn = lab.ran.as_ref().and_then(|ran| ran.drawn.as_ref());
-    let (Some(truth), Some(drawn)) = (&lab.truth, drawn) else {
-        lab.known.caption = "no truth of the frozen frame: choose this view, then freeze".to_owned();
+    let drawn = left.ran.and_then(|ran| ran.drawn.as_ref());
+    let (Some(truth), Some(drawn)) = (left.truth, drawn) else {
+        *left.caption = "no truth of the frozen frame: choose this view, then freeze".to_owned();
         return picture;
     };
     let (mut in_vain, mut lost) = (0, 0);
-    for (object, (box_, drawn)) in lab.session.world.host_bounds().iter().zip(&drawn.objects).enumerate() {
+    for (object, (box_, drawn)) in left.session.world.host_bounds().iter().zip(&drawn.objects).enumerate() {
         let pen = match (drawn, truth.is_visible(object)) {
             (true, false) => IN_VAIN,
             (false, true) => LOST,
@@ -155,6 +173,6 @@ pub(super) fn false_positives(lab: &mut Lab, view: &View, images: &FrameImages) 
         lost += usize::from(!drawn);
         draw_edges(&mut picture, view, &corners(box_), pen);
     }
-    lab.known.caption = format!("{in_vain} drawn in vain (red), {lost} lost (magenta)");
+    *left.caption = format!("{in_vain} drawn in vain (red), {lost} lost (magenta)");
     picture
 }
