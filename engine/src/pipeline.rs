@@ -15,9 +15,11 @@ use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+mod constants;
 mod replaced;
 mod vertices;
 
+use constants::Constants;
 use replaced::Replaced;
 pub(crate) use vertices::{INSTANCE_BINDING, VERTEX_BINDING};
 
@@ -336,28 +338,6 @@ fn draw_pipeline(
 fn attachment_formats(state: &DrawState) -> Vec<vk::Format> {
     let formats = state.colour.into_iter().chain(state.item.then_some(Format::Item));
     formats.map(|format| format.vulkan(state.depth)).collect()
-}
-
-/// Specialization constants in the form Vulkan takes them.
-struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    bytes: Vec<u8>,
-}
-
-impl Constants {
-    fn new(stage: &StageInfo, values: &[u32]) -> Self {
-        let entry = |(index, constant): (usize, &shaders::ConstantInfo)| vk::SpecializationMapEntry {
-            constant_id: constant.id,
-            offset: (index * 4) as u32,
-            size: 4,
-        };
-        let entries = stage.constants.iter().enumerate().map(entry).collect();
-        Constants { entries, bytes: bytemuck::cast_slice(values).to_vec() }
-    }
-
-    fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default().map_entries(&self.entries).data(&self.bytes)
-    }
 }
 
 fn first(

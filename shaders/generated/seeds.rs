@@ -100,6 +100,7 @@ const _: () = {
 };
 
 /// What the host's rays have met is taken for seen.
+/// No twin: it writes a one where a list says so; tests/tests/method_hzb_iterative/seeds.rs holds what comes of it to what the device's rays mark.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkMet {
     /// `met` in GLSL.

@@ -20,6 +20,7 @@ use host::HostRays;
 use scenes::bvh::{BadBounds, Bvh, BvhOptions, Split, REBUILD_FACTOR};
 use shaders::types::{SeedNode, SeedView};
 use shaders::{seeds, BufferRef, Stage};
+use shape::Shapes;
 
 /// Who casts rays.
 pub const RAYS_OPTION: OptionInfo = OptionInfo {
@@ -48,8 +49,8 @@ pub struct Seeds {
 }
 
 enum Rays {
-    Host(HostRays),
-    Device(DeviceRays),
+    Host(Box<HostRays>),
+    Device(Box<DeviceRays>),
 }
 
 impl Seeds {
@@ -68,10 +69,11 @@ impl Seeds {
         let Some(root) = bvh.nodes().first() else { return Ok(None) };
         let origin = root.bounds.centre();
         let nodes = flatten(&bvh, origin);
-        let shapes = world.mesh_shapes()?;
+        let (meshes, indices, vertices) = world.read_meshes()?;
+        let shapes = Shapes::of(meshes, &vertices, indices);
         let rays = match on_host {
-            true => Rays::Host(HostRays::new(gpu, world, nodes, shapes)?),
-            false => Rays::Device(DeviceRays::new(gpu, &nodes, &shapes)?),
+            true => Rays::Host(Box::new(HostRays::new(gpu, world, nodes, shapes)?)),
+            false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes)?)),
         };
         Ok(Some(Seeds { bvh, origin, usual_size: usual_size(world), revision: world.revision(), rays }))
     }

@@ -5,6 +5,7 @@ mod detail;
 mod drawn;
 mod draws;
 mod order;
+mod read;
 mod solids;
 mod still;
 mod ties;
@@ -20,7 +21,6 @@ pub use ties::LastToFirst;
 pub use upload::bounds as gpu_bounds;
 pub use view::{split, View};
 
-use crate::seeds::shape::Shapes;
 use crate::Result;
 use blocks::Blocks;
 use detail::Detail;
@@ -348,18 +348,6 @@ impl World {
         &self.host.boxes
     }
 
-    /// Bounds as they are on the GPU now, of the objects that culling methods see.
-    pub fn read_bounds(&self) -> Result<Vec<Bounds>> {
-        let mut bounds = self.read_all_bounds()?;
-        bounds.truncate(self.len());
-        Ok(bounds)
-    }
-
-    /// The same of all objects, translucent ones too; for tests.
-    pub fn read_all_bounds(&self) -> Result<Vec<Bounds>> {
-        Ok(self.bounds.read()?)
-    }
-
     /// Objects that can move, of those that culling methods see, and where the last call of [`World::set_time`] put them, in an order that never changes.
     pub fn moving(&self) -> impl ExactSizeIterator<Item = (u32, DAffine3)> + '_ {
         let object = |scene_object: u32| self.host.object_of_scene[scene_object as usize];
@@ -385,18 +373,6 @@ impl World {
     /// The mesh of each object.
     pub fn host_object_meshes(&self) -> &[u32] {
         &self.host.object_meshes
-    }
-
-    /// Where in its box each mesh has triangles.
-    pub fn mesh_shapes(&self) -> Result<Shapes> {
-        Ok(Shapes::of(&self.host.meshes, &self.vertices.read()?, &self.host.indices))
-    }
-
-    /// A command for every object that culling methods see.
-    pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
-        let mut commands = self.all_commands.read()?;
-        commands.truncate(self.len());
-        Ok(commands)
     }
 }
 

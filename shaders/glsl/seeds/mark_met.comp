@@ -1,4 +1,5 @@
 // seeds/mark_met: what the host's rays have met is taken for seen.
+// No twin: it writes a one where a list says so; tests/tests/method_hzb_iterative/seeds.rs holds what comes of it to what the device's rays mark.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"

@@ -1,0 +1,32 @@
+//! What the device has of a world, read back: where no frame waits for it.
+
+use super::World;
+use crate::Result;
+use shaders::draw::ObjectsVertex;
+use shaders::types::{Bounds, DrawCommand, MeshRange};
+
+impl World {
+    /// Bounds as they are on the GPU now, of the objects that culling methods see.
+    pub fn read_bounds(&self) -> Result<Vec<Bounds>> {
+        let mut bounds = self.read_all_bounds()?;
+        bounds.truncate(self.len());
+        Ok(bounds)
+    }
+
+    /// The same of all objects, translucent ones too; for tests.
+    pub fn read_all_bounds(&self) -> Result<Vec<Bounds>> {
+        Ok(self.bounds.read()?)
+    }
+
+    /// Meshes as the host knows them: where their vertices and indices are, which are relative to each mesh's first vertex, and the vertices.
+    pub fn read_meshes(&self) -> Result<(&[MeshRange], &[u32], Vec<ObjectsVertex>)> {
+        Ok((&self.host.meshes, &self.host.indices, self.vertices.read()?))
+    }
+
+    /// A command for every object that culling methods see.
+    pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
+        let mut commands = self.all_commands.read()?;
+        commands.truncate(self.len());
+        Ok(commands)
+    }
+}
