@@ -92,8 +92,7 @@ pub struct MeasureBlocks {
     pub bounds: BufferRef<types::Bounds>,
     /// `spans` in GLSL.
     pub spans: BufferRef<types::BlockSpan>,
-    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before;
-    /// nothing is said where there is a single range.
+    /// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
     pub reach: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::StepView>,
@@ -439,6 +438,7 @@ impl Stage for TestBlocks {
         constants: &[
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
+            ConstantInfo { name: "MEASURED", id: 2 },
             ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
         local_size: [64, 1, 1],
@@ -464,7 +464,12 @@ impl Stage for TestBlocks {
                 self.seen.into(),
             ],
             bytemuck::bytes_of(&push),
-            vec![self.constants.footprint_texels, u32::from(self.constants.behind), self.constants.finest_level],
+            vec![
+                self.constants.footprint_texels,
+                u32::from(self.constants.behind),
+                u32::from(self.constants.measured),
+                self.constants.finest_level,
+            ],
         )
     }
 }
@@ -489,6 +494,8 @@ pub struct TestBlocksConstants {
     pub footprint_texels: u32,
     /// Something was drawn before: there is a pyramid of this frame.
     pub behind: bool,
+    /// There are several ranges, and blocks were measured; all are due in a single one.
+    pub measured: bool,
     /// `FINEST_LEVEL` in GLSL.
     pub finest_level: u32,
 }
@@ -496,7 +503,7 @@ pub struct TestBlocksConstants {
 impl Default for TestBlocksConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, finest_level: 1 }
+        Self { footprint_texels: 4, behind: true, measured: true, finest_level: 1 }
     }
 }
 

@@ -99,17 +99,49 @@ fn what_a_box_brought_in_is_drawn_ahead_in_the_next_frame() {
     };
     let case = case.filmed([3.0, 3.0001, 3.8, 3.8001].map(shot).to_vec());
     let mut lab = harness::Lab::new(&gpu, &case);
-    // In a single range, with every box tested, and nobody looking at the item buffer between the frames.
-    let subject = setting(&[("ranges", "1"), ("small", "0"), ("every", "64")]);
+    // In two ranges, with every box tested, and nobody looking at the item buffer between the frames.
+    let subject = setting(&[("ranges", "2"), ("rays", "off"), ("small", "0"), ("every", "64")]);
     let mut method = lab.make(&subject, &Default::default());
     let mut steps = Vec::new();
     for (frame, shot) in case.shots.iter().enumerate() {
         let take = lab.take(&mut *method, shot, frame);
         steps.push(drawn_by_step(&gpu, &take));
     }
-    let [ahead, behind] = steps[2][..] else { panic!("two steps: {steps:?}") };
-    assert!(behind > 10, "nothing comes into view, so this proves nothing: {steps:?}");
-    assert_eq!(steps[3], [ahead + behind, 0], "{steps:?}");
+    let last_step = |frame: usize| *steps[frame].last().unwrap();
+    let drawn = |frame: usize| steps[frame].iter().sum::<usize>();
+    assert!(last_step(2) > 10, "nothing comes into view, so this proves nothing: {steps:?}");
+    assert_eq!((last_step(3), drawn(3)), (0, drawn(2)), "{steps:?}");
+}
+
+#[test]
+fn a_list_that_serves_again_is_made_of_owners_every_few_frames() {
+    let gpu = gpu();
+    let case = worlds::walled(400);
+    let shot = |frame: u32| {
+        let height = if frame < 3 { 3.0 } else { 3.8 } + 1e-4 * f64::from(frame);
+        scenes::Shot {
+            pose: scenes::Pose::looking_at(glam::DVec3::new(0.7, height, 7.0), glam::DVec3::ZERO),
+            ..case.shots[0]
+        }
+    };
+    let case = case.filmed((0..9).map(shot).collect());
+    let mut lab = harness::Lab::new(&gpu, &case);
+    let mut method = lab.make(&setting(&[("ranges", "1"), ("rays", "off")]), &Default::default());
+    let (mut steps, mut anew) = (Vec::new(), Vec::new());
+    for (frame, shot) in case.shots.iter().enumerate() {
+        let take = lab.take(&mut *method, shot, frame);
+        steps.push(drawn_by_step(&gpu, &take));
+        anew.push(!take.report.skips.iter().any(|skip| skip.reason == "an earlier frame's list serves"));
+    }
+    assert_eq!(
+        anew,
+        [true, true, false, false, false, true, false, false, false],
+        "looked at owners in frames 0, 4 and 8"
+    );
+    // What comes into view in frame 3 is tested until owners are known, and drawn ahead from then on.
+    let [(ahead, came), (_, again)] = [3, 4].map(|frame: usize| (steps[frame][0], steps[frame][1]));
+    assert!(came > 10 && again > 10, "{steps:?}");
+    assert!(steps[5][0] > ahead && steps[5][1] < again, "{steps:?}");
 }
 
 #[test]

@@ -147,7 +147,7 @@ impl Broken {
 
     /// `hzb` as it is, but for the defect.
     fn two_phases(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> culling::Result<()> {
-        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1)?;
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1, 1)?;
         let (layout, coarsest_level) = culling::hzb::layout(target.size);
         // Each level but the finest stands for its finer neighbour.
         let off_by_one = |level: usize| layout[if level < 2 { level } else { level - 1 }];

@@ -147,7 +147,7 @@ impl Method for Buggy {
             Bug::NoOutwardRounding => cull.snap_px = 0.0,
             _ => {}
         }
-        let pyramid = culling::hzb::Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1)?;
+        let pyramid = culling::hzb::Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1, 1)?;
         let (_, coarsest_level): (Vec<PyramidLevel>, u32) = culling::hzb::layout(target.size);
         self.lists[0].pack(f, world, self.seen.all());
         world.draw(f, &self.lists[0], view, target);

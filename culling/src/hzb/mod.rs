@@ -59,7 +59,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
 
 impl Method for Hzb {
     fn frame(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
-        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1)?;
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, 1, self.texels)?;
         let still = self.still.holds(world, view);
         world.update(f);
         f.clear(target);

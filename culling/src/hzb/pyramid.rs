@@ -51,17 +51,31 @@ impl Pyramid {
         Pyramid { finest: level.clamp(1, REDUCED_LEVELS), ..self }
     }
 
+    /// The same up to the first level that tests of footprints of so many texels a side need: it has no more in all.
+    pub fn for_footprints(self, texels: u32) -> Self {
+        let fits = |level: &u32| self.tiles_at(*level).iter().all(|side| *side <= texels);
+        let coarsest = (self.finest..self.coarsest).find(fits).unwrap_or(self.coarsest);
+        Pyramid { coarsest, ..self }
+    }
+
     /// The finest level that is kept.
     pub fn finest_level(&self) -> u32 {
         self.finest
     }
 
-    /// The pyramid in `slot` if it has the size asked for, otherwise a new one, kept from level `finest` on.
-    pub fn sized<'a>(slot: &'a mut Option<Pyramid>, gpu: &Gpu, size: [u32; 2], finest: u32) -> Result<&'a Pyramid> {
+    /// The pyramid in `slot` if it has the size asked for, otherwise a new one, kept from level `finest` on, for tests of footprints of
+    /// `texels` a side.
+    pub fn sized<'a>(
+        slot: &'a mut Option<Pyramid>,
+        gpu: &Gpu,
+        size: [u32; 2],
+        finest: u32,
+        texels: u32,
+    ) -> Result<&'a Pyramid> {
         let fitting = slot.take().filter(|pyramid| pyramid.size == size);
         Ok(slot.insert(match fitting {
             Some(pyramid) => pyramid,
-            None => Pyramid::new(gpu, size)?.from_level(finest),
+            None => Pyramid::new(gpu, size)?.from_level(finest).for_footprints(texels),
         }))
     }
 
@@ -137,7 +151,7 @@ impl Pyramid {
         self.texels.all()
     }
 
-    /// The level that has a single texel.
+    /// The last level that is made: one texel, or as many as a footprint may touch.
     pub fn coarsest_level(&self) -> u32 {
         self.coarsest
     }

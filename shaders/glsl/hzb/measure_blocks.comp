@@ -10,8 +10,7 @@
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) writeonly buffer Spans { BlockSpan items[]; } spans;
-// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before;
-// nothing is said where there is a single range.
+// The bits of the largest begin, and those of the smallest inverted: floats from 0 on have the order of their bits. Must be 0 before.
 layout(set = 0, binding = 2, scalar) buffer Reach { uint items[]; } reach;
 layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
 
@@ -37,7 +36,6 @@ void main() {
     }
     spans.items[block] = span;
     uint begin = floatBitsToUint(span.begin);
-    if (all.range_count == 1u) return;
     // The looks before the atomics may be out of date, but never too large.
     if (span.begin <= span.end && begin > reach.items[0]) atomicMax(reach.items[0], begin);
     if (span.begin <= span.end && ~begin > reach.items[1]) atomicMax(reach.items[1], ~begin);

@@ -12,6 +12,8 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 // Something was drawn before: there is a pyramid of this frame.
 layout(constant_id = 1) const bool BEHIND = true;
+// There are several ranges, and blocks were measured; all are due in a single one.
+layout(constant_id = 2) const bool MEASURED = true;
 layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) buffer Spans { BlockSpan items[]; } spans;
 layout(set = 0, binding = 2, scalar) readonly buffer Reach { uint items[]; } reach;
@@ -32,19 +34,27 @@ bool was_seen(uint block, uint object_count) {
     return object < end;
 }
 
+// True if objects of a block so far away may be due.
+bool is_in_reach(BlockSpan span, StepView all) {
+    float nearest = nearest_begin(reach.items[1]);
+    float outermost = uintBitsToFloat(reach.items[0]) - nearest;
+    return span.begin <= span.end && push.step >= range_of(span.begin - nearest, outermost, all.range_count, all.share)
+        && push.step <= range_of(span.end - nearest, outermost, all.range_count, all.share) + 1u;
+}
+
+bool is_in_view(Bounds bound, CullView view) {
+    return (bound.flags & OBJECT_ALWAYS_KEPT) != 0u || !outside_frustum(clip_from_bounds(bound, view), footprint_widening(bound.flags, view));
+}
+
 void main() {
     uint block = invocation_index();
     StepView all = views.items[0];
     if (block >= all.block_count) return;
-    BlockSpan span = spans.items[block];
-    float nearest = nearest_begin(reach.items[1]);
-    float outermost = uintBitsToFloat(reach.items[0]) - nearest;
-    bool is_due = span.begin <= span.end && push.step >= range_of(span.begin - nearest, outermost, all.range_count, all.share)
-        && push.step <= range_of(span.end - nearest, outermost, all.range_count, all.share) + 1u;
+    bool is_due = MEASURED ? is_in_reach(spans.items[block], all) : BEHIND || is_in_view(bounds.items[block], all.view);
     if (push.step == 0u) is_due = is_due && was_seen(block, is_due ? all.object_count : 0u);
     if (BEHIND && is_due && !is_visible(bounds.items[block], all.view, all.coarsest_level)) {
         is_due = false;
-        spans.items[block] = BlockSpan(1.0, 0.0);
+        if (MEASURED) spans.items[block] = BlockSpan(1.0, 0.0);
     }
     due.items[block] = is_due ? 1u : 0u;
 }

@@ -10,6 +10,8 @@
 //!   front (see [`crate::seeds`]); that counts as seen. What they miss lies in gaps between it, so that one range will do.
 //! - Without rays r follows from the same change.
 //! - Blocks of objects are tested before their objects, and a block once hidden is hidden for the rest of the frame.
+//! - In a single range what is drawn first need not be what was seen, if only the rest is tested: the list of one frame serves until owners are
+//!   looked at again. What comes into view meanwhile is tested, and drawn, again.
 //! - Who counts as seen is found out every few frames from the item buffer, as the EOVC thesis filters occluders (III.6.2): exactly who owns
 //!   a pixel, in any order of drawing. In between, what is newly drawn is added: it passed the tests, so that it would be drawn again.
 //!   (Flags by fragment in every frame kept what was drawn before its occluder, and make a draw a third slower.)
@@ -93,6 +95,10 @@ struct Iterative {
     gpu: Gpu,
     /// Who was seen, by object. What is drawn is added at once: a step that looked at it looks at no object of its ranges again.
     seen: Buffer<u32>,
+    /// What is in the list of step 0, by object, where there is a single range.
+    ahead: Buffer<u32>,
+    /// That list serves the next frame too.
+    ahead_holds: bool,
     steps: Steps,
     seeds: Option<Seeds>,
     pyramid: Option<Pyramid>,
@@ -116,6 +122,8 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     Ok(Box::new(Iterative {
         gpu: gpu.clone(),
         seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
+        ahead: Buffer::new(gpu, "hzb.ahead", world.len(), Placement::Storage)?,
+        ahead_holds: false,
         steps: Steps::new(gpu, world, options)?,
         seeds: Seeds::new(gpu, world, options)?,
         pyramid: None,
@@ -142,7 +150,7 @@ impl Method for Iterative {
         if self.still.holds(world, view) {
             return self.same_again(f, world, view, target);
         }
-        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, self.finest)?;
+        let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, self.finest, self.steps.texels())?;
         // What was seen before a cut is no better than the rest.
         self.afresh |= self.hurry.is_cut(view) || (self.seeds.is_some() && self.hurry.new_share(view) > STALE_SHARE);
         self.ranges = self.hurry.ranges(view);
@@ -164,20 +172,30 @@ impl Method for Iterative {
             None => {}
         }
         self.steps.measure(f, world, self.ranges); // 2. where each block of objects lies along the view
+        let in_one = self.ranges == 1 && self.first_step == 0;
+        let same_list = in_one && self.ahead_holds && !casts;
+        let ahead = in_one.then(|| self.ahead.all());
+        if in_one && !same_list {
+            f.fill("hzb/clear_ahead", &self.ahead, 0);
+        }
         for number in self.first_step..=self.ranges {
             f.part(PARTS[number as usize]);
-            let behind = number > self.first_step;
-            if behind {
+            let step = Step::new(number, number > self.first_step, self.seen.all(), ahead);
+            if step.behind {
                 match number - self.first_step {
                     1 => pyramid.reduce(f, target), // 3. farthest depth of all drawn so far
                     _ => pyramid.reduce_if(f, target, self.steps.reductions()), // if the last step drew anything
                 }
             }
-            let step = Step { number, behind, seen: self.seen.all() };
-            self.steps.find(f, world, pyramid, &step); // 4. what is due and not hidden: seen of this range, unseen of the one before
-            self.steps.test_boxes(f, world, &step, target); // 5. of what was not seen, only what shows by its box
+            if number == 0 && same_list {
+                Steps::skip_finding(f, "an earlier frame's list serves");
+            } else {
+                self.steps.find(f, world, pyramid, &step); // 4. what is due and not hidden: seen of this range, unseen of the one before
+                self.steps.test_boxes(f, world, &step, target); // 5. of what was not seen, only what shows by its box
+            }
             self.steps.draw(f, world, &step, view, target); // 6. draw it, and go on to the next range
         }
+        self.ahead_holds = in_one && !filters;
         f.part("");
         self.filter(f, filters, target)?; // 7. every few frames: who owns a pixel
         self.afresh = false;
@@ -186,6 +204,7 @@ impl Method for Iterative {
 
     fn forget(&mut self) -> Result<()> {
         self.still.forget();
+        self.ahead_holds = false;
         self.hurry.forget();
         self.afresh = true;
         self.until_filtering = 0;
@@ -236,7 +255,7 @@ impl Iterative {
         let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };
         for number in self.first_step..=last_step {
             f.part(PARTS[number as usize]);
-            let step = Step { number, behind: number > self.first_step, seen: self.seen.all() };
+            let step = Step::new(number, number > self.first_step, self.seen.all(), None);
             self.steps.draw(f, world, &step, view, target);
         }
         f.part("");

@@ -16,8 +16,23 @@ pub(super) struct Step {
     pub number: u32,
     /// Something was drawn before it.
     pub behind: bool,
-    /// What the last frame saw, by object; what this one draws is added.
+    /// What was seen before, by object: it is due a step earlier.
     pub seen: BufferRef<u32>,
+    /// What is drawn in this step is noted here, by object.
+    pub drawn: BufferRef<u32>,
+}
+
+impl Step {
+    /// `seen`: what was seen before, by object; what is drawn is added. `ahead`, where all is in one range: what is in the list of step 0; all
+    /// else is tested in step 1, seen or not.
+    pub fn new(number: u32, behind: bool, seen: BufferRef<u32>, ahead: Option<BufferRef<u32>>) -> Self {
+        let [seen, drawn] = match (ahead, number) {
+            (Some(ahead), 0) => [seen, ahead],
+            (Some(ahead), _) => [ahead, seen],
+            (None, _) => [seen, seen],
+        };
+        Step { number, behind, seen, drawn }
+    }
 }
 
 /// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
@@ -26,6 +41,7 @@ pub(super) struct Steps {
     spans: Buffer<BlockSpan>,
     /// Where the farthest block in view begins, and the nearest (its bits inverted).
     reach: Buffer<u32>,
+    measured: bool,
     due: Buffer<u32>,
     blocks: Buffer<u32>,
     shown: Buffer<u32>,
@@ -59,6 +75,7 @@ impl Steps {
             view: Buffer::new(gpu, "hzb.step_view", 1, Placement::Upload)?,
             spans: Buffer::new(gpu, "hzb.spans", blocks, Placement::Storage)?,
             reach: words("reach", 2)?,
+            measured: false,
             due: words("due", blocks)?,
             blocks: words("due_blocks", LISTED_HEADER as usize + blocks)?,
             shown: words("shown", world.len())?,
@@ -80,6 +97,11 @@ impl Steps {
             kinds: kinds as u32,
             world: world.id(),
         })
+    }
+
+    /// Pyramid texels a footprint may touch in each direction.
+    pub fn texels(&self) -> u32 {
+        self.texels
     }
 
     /// Gives the stages the frame's view.
@@ -111,11 +133,14 @@ impl Steps {
         Ok(self.view.write(&[all])?)
     }
 
-    /// Where blocks lie along the view, and, if there is more than one range, between where they begin.
-    pub fn measure(&self, f: &mut Frame, world: &World, range_count: u32) {
-        if range_count > 1 {
-            f.fill("hzb/clear_reach", &self.reach, 0);
+    /// Where blocks lie along the view, and between where they begin; in a single range nothing asks.
+    pub fn measure(&mut self, f: &mut Frame, world: &World, range_count: u32) {
+        self.measured = range_count > 1;
+        if !self.measured {
+            f.skip(hzb::MeasureBlocks::INFO.name, "a single range");
+            return;
         }
+        f.fill("hzb/clear_reach", &self.reach, 0);
         let measure = hzb::MeasureBlocks {
             bounds: world.block_bounds(),
             spans: self.spans.all(),
@@ -123,6 +148,18 @@ impl Steps {
             views: self.view.all(),
         };
         f.dispatch(measure, if world.is_empty() { 0 } else { world.block_count() });
+    }
+
+    /// Notes that a step's list holds.
+    pub fn skip_finding(f: &mut Frame, reason: &'static str) {
+        let stages = [
+            hzb::TestBlocks::INFO,
+            hzb::ListBlocks::INFO,
+            hzb::TestObjects::INFO,
+            hzb::ScanBlocks::INFO,
+            hzb::WriteBlocks::INFO,
+        ];
+        stages.iter().for_each(|stage| f.skip(stage.name, reason));
     }
 
     /// Finds what is due in a step and not hidden, and writes its commands.
@@ -144,7 +181,7 @@ impl Steps {
             due: self.due.all(),
             seen: step.seen,
             step: number,
-            constants: hzb::TestBlocksConstants { footprint_texels, behind, finest_level },
+            constants: hzb::TestBlocksConstants { footprint_texels, behind, measured: self.measured, finest_level },
         };
         f.dispatch(test, block_count);
         let subgroup_size = self.subgroup_size;
@@ -201,7 +238,7 @@ impl Steps {
             object_meshes: world.object_meshes(),
             meshes: world.meshes(),
             commands: self.commands[number as usize].all(),
-            visible: step.seen,
+            visible: step.drawn,
             small_indices: self.small_indices,
             constants: hzb::WriteBlocksConstants { kind_count },
         };
@@ -221,7 +258,7 @@ impl Steps {
             shown: self.shown.all(),
             views: self.shape.view(),
             drawn: commands,
-            visible: step.seen,
+            visible: step.drawn,
         };
         if self.kinds > 0 {
             f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());

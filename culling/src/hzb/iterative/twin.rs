@@ -50,11 +50,12 @@ pub fn measure_blocks(blocks: &[Bounds], all: &StepView) -> (Vec<BlockSpan>, Rea
     (spans, reach)
 }
 
-/// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `seen`: what the last frame saw, by object. `pyramid`: of what was drawn before, if
-/// anything was. Twin of `hzb/test_blocks`.
+/// Which blocks are due in a step, 1 or 0 each; those found hidden are nowhere from then on. `seen`: what the last frame saw, by object.
+/// `spans`: where they were measured to be; in a single range they are not. `pyramid`: of what was drawn before, if anything was. Twin of
+/// `hzb/test_blocks`.
 pub fn test_blocks(
     (blocks, seen): (&[Bounds], &[u32]),
-    spans: &mut [BlockSpan],
+    mut spans: Option<&mut [BlockSpan]>,
     reach: Reach,
     all: &StepView,
     pyramid: Option<&PyramidTest<'_>>,
@@ -63,13 +64,19 @@ pub fn test_blocks(
     let range = |depth: f32| reach.range_of(depth, all);
     let mut due = Vec::with_capacity(blocks.len());
     let mut of_block = seen.chunks(BLOCK_OBJECTS as usize);
-    for (block, span) in blocks.iter().zip(spans) {
+    let in_view = |block: &Bounds| {
+        let widening = footprint_widening(block.flags, &all.view);
+        block.flags & OBJECT_ALWAYS_KEPT != 0 || !outside_frustum(&clip_from_bounds(block, &all.view), widening)
+    };
+    let in_reach =
+        |span: &BlockSpan| span.begin <= span.end && (range(span.begin)..=range(span.end) + 1).contains(&step);
+    for (index, block) in blocks.iter().enumerate() {
         let was_seen = of_block.next().is_some_and(|objects| objects.iter().any(|seen| *seen != 0));
-        let ranges = range(span.begin)..=range(span.end) + 1;
-        let is_due = span.begin <= span.end && ranges.contains(&step) && (step > 0 || was_seen);
+        let is_due = spans.as_ref().map_or_else(|| in_view(block), |spans| in_reach(&spans[index]));
+        let is_due = is_due && (step > 0 || was_seen);
         let is_hidden = is_due && pyramid.is_some_and(|pyramid| !is_visible(block, &all.view, pyramid));
-        if is_hidden {
-            *span = NOWHERE;
+        if let Some(spans) = spans.as_mut().filter(|_| is_hidden) {
+            spans[index] = NOWHERE;
         }
         due.push(u32::from(is_due && !is_hidden));
     }
