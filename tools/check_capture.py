@@ -49,6 +49,8 @@ def fail(message):
 
 
 def open_capture(path):
+    if not os.path.isfile(path):
+        fail(f"{path}: there is no such file")
     file = rd.OpenCaptureFile()
     status = file.OpenFile(path, "", None)
     if status != rd.ResultCode.Succeeded:
@@ -122,12 +124,18 @@ def last_picture(controller, stages):
 
 def expected(path, label, frame):
     """The stages that ran in a frame, as results.json says."""
-    with open(path, encoding="utf-8") as file:
-        results = json.load(file)
+    try:
+        with open(path, encoding="utf-8") as file:
+            results = json.load(file)
+    except (OSError, ValueError) as error:
+        fail(f"--results {path}: {error}")
     methods = [method for method in results["methods"] if method["label"] == label]
     if not methods:
         fail(f"{path}: no method '{label}', which the capture is of")
     ran = methods[0]["frames"]["stages"]
+    frames = len(next(iter(ran.values()), []))
+    if not 0 <= frame < frames:
+        fail(f"--frame {frame}: {path} has {frames} frames, counted from 0")
     return [name for name, times in ran.items() if times[frame] is not None and not name.startswith(HOST_ROWS)]
 
 
@@ -240,8 +248,11 @@ def check(order):
 def main():
     order = arguments()
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
-    faults = check(order)
-    rd.ShutdownReplay()
+    try:
+        faults = check(order)
+    finally:
+        # Without it the process ends with a message of LLVM's, whatever was found.
+        rd.ShutdownReplay()
     for fault in faults:
         print(f"check_capture: {order.capture}: {fault}", file=sys.stderr)
     sys.exit(1 if faults else 0)

@@ -44,7 +44,7 @@ use tree::{node_label, Tree};
 /// If the file or its data cannot be read, breaks the specification, requires an extension that Sightline does not know, or has
 /// more than 2^24 objects or 2^31 indices. The message is one line; it names the file, the element and the fault.
 pub fn import(path: &Path) -> Result<Scene, SceneError> {
-    let file = std::fs::read(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+    let file = std::fs::read(path).map_err(|cause| SceneError::Read { path: path.into(), cause })?;
     import_bytes(path, &file)
 }
 

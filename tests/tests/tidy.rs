@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+#[path = "tidy/circles.rs"]
+mod circles;
 #[path = "tidy/guides.rs"]
 mod guides;
 #[path = "tidy/planted.rs"]
@@ -77,7 +79,7 @@ fn unsafe_code_is_only_in_the_engine() {
 
 #[test]
 fn modules_use_each_other_in_one_direction() {
-    assert_none(module_circles(root()));
+    assert_none(circles::module_circles(root()));
 }
 
 fn too_long(root: &Path) -> Vec<String> {
@@ -261,54 +263,6 @@ fn unsafe_outside_the_engine(root: &Path) -> Vec<String> {
     let files = rooms.flat_map(|room| files_below(&root.join(room))).filter(|file| extension(file) == "rs");
     let found = files.filter(|file| has_word(&code_of(&read(file)), "unsafe"));
     found.map(|file| format!("{}: `unsafe` belongs in engine/ only", shown(root, &file))).collect()
-}
-
-/// Modules of a room (those that its `lib.rs` names) that use each other by `crate::MODULE`, straight or through others; tests may.
-fn module_circles(root: &Path) -> Vec<String> {
-    let mut faults = Vec::new();
-    for room in ROOMS {
-        let source = root.join(room).join("src");
-        let library = read(&source.join("lib.rs"));
-        let declared = library.lines().filter_map(|line| line.split_once("mod ")?.1.strip_suffix(';'));
-        let names: Vec<String> = declared.map(str::to_owned).collect();
-        let mut open: Vec<(String, Vec<String>)> =
-            names.iter().map(|module| (module.clone(), used_modules(&source, module, &names))).collect();
-        // What uses nothing that is left, or is used by nothing that is left, is in no circle.
-        loop {
-            let before = open.len();
-            let left: Vec<String> = open.iter().map(|(module, _)| module.clone()).collect();
-            open.retain(|(_, used)| used.iter().any(|one| left.contains(one)));
-            let used: Vec<String> = open.iter().flat_map(|(_, used)| used.clone()).collect();
-            open.retain(|(module, _)| used.contains(module));
-            if open.len() == before {
-                break;
-            }
-        }
-        if !open.is_empty() {
-            let circle: Vec<String> = open.into_iter().map(|(module, _)| module).collect();
-            faults.push(format!("{room}/src: {} use each other; move what they share below them", circle.join(", ")));
-        }
-    }
-    faults
-}
-
-fn used_modules(source: &Path, module: &str, names: &[String]) -> Vec<String> {
-    let files = files_below(&source.join(module)).into_iter().chain([source.join(format!("{module}.rs"))]);
-    let written = files.filter(|file| {
-        !file
-            .strip_prefix(source)
-            .unwrap_or(file)
-            .components()
-            .any(|part| matches!(part.as_os_str().to_str(), Some("tests" | "tests.rs")))
-    });
-    let code: String =
-        written.map(|file| code_of(read(&file).split("#[cfg(test)]\nmod tests {").next().unwrap_or(""))).collect();
-    let paths = code.split("crate::").skip(1).map(|path| match path.strip_prefix('{') {
-        Some(group) => group.split(';').next().unwrap_or(""),
-        None => path.split(|letter: char| !(letter.is_alphanumeric() || letter == '_')).next().unwrap_or(""),
-    });
-    let paths: Vec<&str> = paths.collect();
-    names.iter().filter(|name| *name != module && paths.iter().any(|path| has_word(path, name))).cloned().collect()
 }
 
 /// A Rust text without line comments and the insides of strings that end on their line.

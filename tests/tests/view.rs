@@ -81,6 +81,33 @@ fn frozen_lists_show_the_same_objects_to_the_same_eye_and_stay_as_they_are() {
     }
 }
 
+#[test]
+fn every_view_says_what_its_colours_mean() {
+    let gpu = device::gpu();
+    let (mut lab, mut controls, path) = open(&gpu, "city-block", 0.02);
+    controls.method = METHODS.iter().position(|entry| entry.id == "eovc").unwrap();
+    let legends = [
+        (Show::Colour, ""),
+        (Show::Depth, "near is bright"),
+        (Show::Farthest, "near is bright"),
+        (Show::Items, "one colour an object"),
+        (Show::Overdraw, "blue 1, green 4"),
+        (Show::Motion, "direction as hue"),
+        (Show::WarpError, "red: nearer than real"),
+        (Show::Groups, "groups (orange)"),
+        (Show::Boxes, "single objects (blue)"),
+        (Show::FalsePositives, "drawn in vain (red)"),
+    ];
+    assert_eq!(legends.map(|(show, _)| show), Show::ALL);
+    for (show, legend) in legends {
+        controls.show = show;
+        // A warp starts from the frame before.
+        (0..3).for_each(|frame| drop(shown(&mut lab, &controls, &path.sample(frame, FRAMES))));
+        let said = lab.caption();
+        assert!(said.contains(legend) && said.is_empty() == legend.is_empty(), "{}: {said}", show.name());
+    }
+}
+
 /// What draws the colour of a scene without textures.
 const DRAWING: [&str; 4] =
     ["draw/objects", "draw/objects_and_items", "draw/objects_and_flags", "draw/objects_items_and_flags"];

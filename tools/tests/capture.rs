@@ -34,11 +34,12 @@ fn check(folder: &Path, arguments: &[&str]) -> Output {
 #[test]
 fn captures_hold_the_stages_that_explain_names() {
     let folder = folder("stages");
-    let bench = ["bench", "--method", "eovc,woc", "--capture", "2", "--no-metrics", "--no-report", "--validation"];
+    let bench = ["bench", "--method", "eovc,woc,chc", "--capture", "2", "--no-metrics", "--no-report", "--validation"];
     sightline(&[&bench[..], &["--out", "."]].concat(), &folder);
     for (method, stages) in [
         ("eovc", ["eovc/cast_rays:query", "draw/objects_and_flags:occludees"]),
         ("woc", ["warp/search_depth", "farthest/test_bounds"]),
+        ("chc", ["queries/test_nodes", "draw/objects"]),
     ] {
         let file = format!("{method}_capture.rdc");
         let arguments = [&file, "--results", "results.json", "--frame", "2", "--save", "."];
@@ -61,6 +62,56 @@ fn captures_hold_the_stages_that_explain_names() {
     let said = text(&output);
     assert!(!output.status.success() && said.contains("stage warp/planted is missing"), "{said}");
     assert!(said.contains("stage warp/search_depth is in no row"), "{said}");
+}
+
+/// A cut leaves a method nothing but rays to begin with; four samples are resolved by stages of their own.
+#[test]
+fn captures_of_cuts_and_of_samples_hold_their_stages() {
+    let folder = folder("cuts");
+    for (method, arguments, file, stages) in [
+        (
+            "hzb-iterative",
+            ["--path", "cuts"],
+            "hzb-iterative_capture.rdc",
+            ["seeds/mark_met", "hzb/test_objects:step 0"],
+        ),
+        (
+            "hzb-iterative[rays=device]",
+            ["--path", "cuts"],
+            "hzb-iterative-rays-device-_capture.rdc",
+            ["seeds/clear_grids", "seeds/cast_rays"],
+        ),
+        ("hzb", ["--samples", "4"], "hzb_capture.rdc", ["engine/resolve_depth", "target/resolve_colour"]),
+    ] {
+        let bench = ["bench", "--method", method, "--capture", "2", "--no-metrics", "--no-report", "--validation"];
+        sightline(&[&bench[..], &arguments, &["--out", "."]].concat(), &folder);
+        let output = check(&folder, &[file, "--results", "results.json", "--frame", "2"]);
+        let said = text(&output);
+        assert!(output.status.success() && stages.iter().all(|stage| said.contains(stage)), "{method}: {said}");
+    }
+}
+
+/// Each error once ended in a trace of Python or LLVM's abort.
+#[test]
+fn what_cannot_be_checked_is_said_in_one_line() {
+    let folder = folder("refused");
+    std::fs::write(folder.join("junk.rdc"), "junk").unwrap();
+    std::fs::write(folder.join("junk.json"), "{").unwrap();
+    sightline(&["bench", "--method", "none", "--capture", "1", "--no-metrics", "--no-report", "--out", "."], &folder);
+    let capture = "none_capture.rdc";
+    for (arguments, expected) in [
+        (&["absent.rdc"][..], "absent.rdc: there is no such file"),
+        (&["junk.rdc"], "junk.rdc: cannot be opened"),
+        (&[capture, "--results", "results.json"], "--results needs --frame"),
+        (&[capture, "--results", "absent.json", "--frame", "1"], "--results absent.json: "),
+        (&[capture, "--results", "junk.json", "--frame", "1"], "--results junk.json: "),
+        (&[capture, "--results", "results.json", "--frame", "4"], "--frame 4: results.json has 4 frames"),
+    ] {
+        let output = check(&folder, arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.lines().count() == 1 && said.contains(expected), "{arguments:?}: {said}");
+    }
 }
 
 #[test]

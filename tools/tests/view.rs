@@ -47,6 +47,7 @@ fn view(folder: &Folder, arguments: &str, keys: &str) -> Output {
 fn assert_good(output: &Output) {
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{}\n{out}\n{err}", output.status);
+    assert!(!err.contains("XSETTINGS") && !err.contains("XRandR"), "what the window system says helps nobody: {err}");
 }
 
 /// Pixels that differ where no text stands: the middle of the picture.
@@ -82,7 +83,7 @@ fn steps_that_are_none_are_refused_before_a_window_opens() {
 
 #[test]
 fn every_view_of_every_kind_of_method_is_shown_without_a_message() {
-    for method in ["hzb", "eovc", "woc"] {
+    for method in ["hzb", "eovc", "woc", "hzb-iterative", "chc"] {
         let folder = Folder::new(&format!("views-{method}"));
         let shots: Vec<String> = VIEWS.iter().map(|view| format!("2,shot={view}.png,V")).collect();
         let keys = format!("H,+W,3,-W,Space,2,{},F,look=150:10,2,shot=frozen.png", shots.join(","));
@@ -106,7 +107,7 @@ fn every_view_of_every_kind_of_method_is_shown_without_a_message() {
 fn all_keys_resize_and_lost_surfaces_leave_no_message() {
     let folder = Folder::new("keys");
     let keys = "Tab,2,Tab,2,C,2,C,T,2,F,+D,2,-D,F,L,V,V,L,2,V,V,V,V,V,V,V,V,B,+W,+Shift,3,-Shift,-W,+E,-E,+Q,-Q,+A,-A,+S,-S,\
-        wheel=3,look=20:-9,B,P,size=500x400,4,shot=small.png,size=900x300,4,shot=wide.png,minimise,2,restore,2,surface,2,R,G,2,H,H,\
+        wheel=3,look=20:-9,B,P,+W,+Shift,size=500x400,4,shot=small.png,-Shift,-W,size=900x300,4,shot=wide.png,minimise,2,restore,2,surface,2,R,G,2,H,H,\
         F12,Space,3,Tab,2,F,size=320x180,4";
     let arguments = "--scene moving-boxes --size 640x360 --method none,hzb,ref --frames 140";
     assert_good(&view(&folder, arguments, keys));
@@ -117,6 +118,13 @@ fn all_keys_resize_and_lost_surfaces_leave_no_message() {
         let path = scenes::CameraPath::from_file(&folder.file(file), 1.0).unwrap();
         assert!(path.sample(0, 30).pose.position.is_finite(), "{file}");
     }
+}
+
+#[test]
+fn escape_closes_the_window_whatever_is_held_or_to_come() {
+    let folder = Folder::new("escape");
+    assert_good(&view(&folder, "--scene boxes --size 320x180 --frames 100000", "V,+W,+Shift,2,Esc,2,shot=never.png"));
+    assert!(!folder.file("never.png").exists());
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! [`super::nohc`] walks in the same way and asks where it pays.
 
 use super::hierarchy::{Hierarchy, Place};
-use super::nohc::Policy;
+use super::policy::Policy;
 use super::recording::{Asking, Recording};
 use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
 use crate::tree::SPLIT_OPTION;

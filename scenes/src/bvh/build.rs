@@ -1,7 +1,9 @@
 //! From boxes to nodes, top-down. No recursion: what is still to be cut lies on a stack.
 
 use super::split::{self, Item};
-use super::{ploc, refit, BadBounds, Bvh, BvhError, BvhOptions, Node, Split, DEPTH_LIMIT, NO_NODE};
+use super::topology::Topology;
+use super::validate::check;
+use super::{ploc, refit, BadBounds, Bvh, BvhError, BvhOptions, Split, DEPTH_LIMIT, NO_NODE};
 use crate::model::Aabb;
 
 /// 2N - 1 nodes must have numbers below [`NO_NODE`].
@@ -9,45 +11,6 @@ const MOST_OBJECTS: usize = (NO_NODE / 2) as usize;
 
 /// Levels that a tree may use beyond twice those of a balanced one.
 const SPARE_LEVELS: u32 = 8;
-
-/// Nodes without bounds, parents before children.
-pub(super) struct Topology {
-    pub(super) nodes: Vec<Node>,
-    pub(super) parents: Vec<u32>,
-    pub(super) depth: u32,
-}
-
-impl Topology {
-    /// A root with so many objects below it, not yet linked to anything.
-    pub(super) fn with_root(objects: usize) -> Self {
-        let mut nodes = Vec::with_capacity((2 * objects).saturating_sub(1));
-        let mut parents = Vec::with_capacity(nodes.capacity());
-        if objects > 0 {
-            nodes.push(open_node(objects));
-            parents.push(NO_NODE);
-        }
-        Topology { nodes, parents, depth: 0 }
-    }
-
-    /// Makes a node a leaf.
-    pub(super) fn close(&mut self, node: u32, object: u32, depth: u32) {
-        self.nodes[node as usize].first_child_or_object = object;
-        self.depth = self.depth.max(depth);
-    }
-
-    /// Gives a node two children and returns the first.
-    pub(super) fn fork(&mut self, node: u32, objects_below: [usize; 2]) -> u32 {
-        let first = self.nodes.len() as u32;
-        self.nodes[node as usize].first_child_or_object = first;
-        self.nodes.extend(objects_below.map(open_node));
-        self.parents.extend([node; 2]);
-        first
-    }
-}
-
-fn open_node(objects: usize) -> Node {
-    Node { bounds: Aabb::EMPTY, first_child_or_object: NO_NODE, objects_below: objects as u32 }
-}
 
 pub(super) fn build(bounds: &[Aabb], options: BvhOptions) -> Result<Bvh, BvhError> {
     if bounds.len() > MOST_OBJECTS {
@@ -98,22 +61,6 @@ fn sort_out(bounds: &[Aabb], bad_bounds: BadBounds) -> Result<(Vec<Item>, Vec<u3
         tracing::warn!("{} objects without usable bounds stay outside the tree and count as visible", unbounded.len());
     }
     Ok((items, unbounded))
-}
-
-/// Are these bounds a box?
-pub(super) fn check(object: usize, bounds: &Aabb) -> Result<(), BvhError> {
-    if bounds.is_valid() {
-        return Ok(());
-    }
-    let Aabb { min, max } = *bounds;
-    let fault = if min.is_nan() || max.is_nan() {
-        "NaN"
-    } else if min.cmpgt(max).any() {
-        "inverted"
-    } else {
-        "infinite"
-    };
-    Err(BvhError::BadBounds { object, fault, min, max })
 }
 
 /// A set of objects that is yet to become the subtree of a node.

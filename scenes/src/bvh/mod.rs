@@ -12,7 +12,8 @@
 //! | `refit` | new bounds in the old tree; what the tree costs; when to build anew |
 //! | `groups` | twin of the occludee group extraction (thesis, section III.3) |
 //! | `rays` | twin of the ray traversal (thesis, section III.4) |
-//! | `validate` | what must hold in every tree |
+//! | `topology` | the shape of a tree while it is built |
+//! | `validate` | what must hold of bounds, and in every tree |
 
 mod build;
 mod groups;
@@ -20,6 +21,7 @@ mod ploc;
 mod rays;
 mod refit;
 mod split;
+mod topology;
 mod validate;
 
 use crate::model::Aabb;

@@ -3,8 +3,8 @@
 //! obvhs works in `f32`, so it sees the scene moved to the origin and scaled to unit size. Only its topology is taken:
 //! bounds come from the objects, in `f64`.
 
-use super::build::Topology;
 use super::split::Item;
+use super::topology::Topology;
 use super::DEPTH_LIMIT;
 use crate::model::Aabb;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! New bounds in the old tree, what a tree costs, and when to build it anew.
 
-use super::build::check;
+use super::validate::check;
 use super::{Bvh, BvhError, NO_NODE};
 use crate::model::Aabb;
 

@@ -1,6 +1,23 @@
-//! What must hold in every tree.
+//! What must hold of bounds before a tree is built, and in every tree.
 
-use super::{Bvh, DEPTH_LIMIT, NO_NODE};
+use super::{Bvh, BvhError, DEPTH_LIMIT, NO_NODE};
+use crate::model::Aabb;
+
+/// Are these bounds a box?
+pub(super) fn check(object: usize, bounds: &Aabb) -> Result<(), BvhError> {
+    if bounds.is_valid() {
+        return Ok(());
+    }
+    let Aabb { min, max } = *bounds;
+    let fault = if min.is_nan() || max.is_nan() {
+        "NaN"
+    } else if min.cmpgt(max).any() {
+        "inverted"
+    } else {
+        "infinite"
+    };
+    Err(BvhError::BadBounds { object, fault, min, max })
+}
 
 impl Bvh {
     /// Checks the tree: N objects in 2N - 1 nodes, each object in exactly one leaf or set aside, children after their parents

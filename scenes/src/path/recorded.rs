@@ -67,7 +67,7 @@ fn frame_value(name: &str, shot: &Shot) -> Result<Value, SceneError> {
 
 impl Recording {
     pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
+        let bytes = std::fs::read(path).map_err(|cause| SceneError::Read { path: path.into(), cause })?;
         let frames = parse(&bytes).map_err(|fault| SceneError::Broken { path: path.into(), fault })?;
         Ok(Recording { frames, sha256: Sha256::digest(&bytes).into() })
     }

@@ -1,7 +1,7 @@
 //! The generator behind `cargo shaders`: compiles every shader, reflects it, and writes `shaders/generated/`.
 //!
 //! `compile` makes SPIR-V, `reflect` reads what it declares, `stages` joins the shaders of a stage, `emit` and
-//! `structs` write Rust. Everything is made in memory first: an error leaves `generated/` as it was.
+//! `structs` write Rust, in `words` that they share. Everything is made in memory first: an error leaves `generated/` as it was.
 
 pub mod compile;
 pub mod docs;
@@ -13,6 +13,7 @@ pub mod stages;
 pub mod structs;
 #[cfg(test)]
 mod tests;
+pub mod words;
 
 use crate::sources::{self, Source, HASHES_FILE};
 use compile::ShaderCompiler;

@@ -1,9 +1,9 @@
 //! Structs that GLSL and Rust share, and the file `types.rs` that holds them with the shared constants.
 
 use super::docs::{constants, Docs};
-use super::emit::{banner, doc, rust_type};
 use super::layout::{Struct, Type};
 use super::stages::check_field_name;
+use super::words::{banner, doc, rust_type};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -108,7 +108,7 @@ pub struct SceneChoice {
     #[arg(long, value_name = "NAME|FILE")]
     pub scene: Vec<String>,
     /// Objects of a procedural scene, as a multiple of its standard number
-    #[arg(long, value_name = "F", default_value_t = 0.25)]
+    #[arg(long, value_name = "F", default_value_t = 0.25, allow_negative_numbers = true)]
     pub scale: f64,
     /// Seed of a procedural scene
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -121,7 +121,7 @@ pub struct SceneChoice {
     #[arg(long, value_name = "NAME|FILE")]
     pub path: Option<String>,
     /// How fast the camera goes: at 1, a frame is 1/960 of the path's way (16 s at 60 Hz)
-    #[arg(long, value_name = "F", default_value_t = 1.0)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
     /// Spread the path's whole way over the run, however few frames that has
     #[arg(long)]

@@ -73,7 +73,11 @@ impl Contender {
         let before = session.gpu.memory_mib();
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
         let made = (entry.make)(&setup).and_then(|method| culling::translucent::after(method, &setup));
-        let method = made.with_context(|| format!("method '{}'", options.label()))?;
+        let method = match made {
+            // Names the method itself.
+            Err(error @ culling::Error::Missing { .. }) => return Err(error.into()),
+            made => made.with_context(|| format!("method '{}'", options.label()))?,
+        };
         let memory_mib = session.gpu.memory_mib() - before;
         Ok(Contender { entry, options, method, memory_mib, depth: session.gpu.depth() })
     }

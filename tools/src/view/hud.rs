@@ -49,7 +49,7 @@ pub fn state(lab: &Lab, controls: &Controls, told: &str, letters: usize) -> Vec<
     let modes = [(controls.playing, "  PLAYING"), (controls.recording, "  RECORDING")];
     let modes: String = modes.iter().filter(|(on, _)| *on).map(|(_, word)| *word).collect();
     lines.push(format!("view: {}  speed {:.2} m/s{modes}", controls.show.name(), controls.camera.speed()));
-    lines.extend([known.caption.as_str(), told].into_iter().flat_map(str::lines).map(str::to_owned));
+    lines.extend([lab.caption(), told].into_iter().flat_map(str::lines).map(str::to_owned));
     let letters = letters.clamp(SHORTEST_LINE, LINE);
     lines.iter().flat_map(|line| wrapped(line, letters)).collect()
 }

@@ -106,6 +106,11 @@ pub fn parse_steps(text: &str) -> Result<Vec<Step>> {
         .collect()
 }
 
+fn finite(number: &str) -> Result<f64> {
+    let number: f64 = number.parse()?;
+    number.is_finite().then_some(number).context("a finite number is needed")
+}
+
 fn parse_step(step: &str) -> Result<Step> {
     if let Some(key) = Key::named(step) {
         return Ok(Step::Inputs(vec![Input::Down(key), Input::Up(key)]));
@@ -123,12 +128,14 @@ fn parse_step(step: &str) -> Result<Step> {
         None if step == "surface" => Ok(Step::Surface),
         Some(("look", way)) => {
             let (right, down) = way.split_once(':').context("two numbers are needed")?;
-            Ok(Step::Inputs(vec![Input::Look(right.parse()?, down.parse()?)]))
+            Ok(Step::Inputs(vec![Input::Look(finite(right)?, finite(down)?)]))
         }
-        Some(("wheel", notches)) => Ok(Step::Inputs(vec![Input::Wheel(notches.parse()?)])),
+        Some(("wheel", notches)) => Ok(Step::Inputs(vec![Input::Wheel(finite(notches)?)])),
         Some(("size", size)) => {
             let (width, height) = size.split_once('x').context("a width and a height are needed")?;
-            Ok(Step::Resize([width.parse()?, height.parse()?]))
+            let size = [width.parse()?, height.parse()?];
+            super::check_size(size)?;
+            Ok(Step::Resize(size))
         }
         Some(("shot", file)) if !file.is_empty() => Ok(Step::Screenshot(file.to_owned())),
         _ => bail!("unknown"),
@@ -160,7 +167,8 @@ mod tests {
         assert_eq!(steps[4..6], [Step::Inputs(vec![Input::Look(30.0, -4.5)]), Step::Inputs(vec![Input::Wheel(-2.0)])]);
         assert_eq!(steps[6..9], [Step::Resize([640, 360]), Step::Minimise(true), Step::Minimise(false)]);
         assert_eq!(steps[9..], [Step::Surface, Step::Screenshot("a.png".to_owned())]);
-        for bad in ["Z", "+", "+X", "look=3", "size=3", "shot=", "shut=a"] {
+        for bad in ["Z", "+", "+X", "look=3", "look=1:inf", "wheel=nan", "size=3", "size=100000x10", "shot=", "shut=a"]
+        {
             let error = format!("{:#}", parse_steps(bad).unwrap_err());
             assert!(error.contains(&format!("'{bad}' is no step; write key names")), "{error}");
         }

@@ -100,6 +100,11 @@ impl Lab {
         self.running.as_ref().map_or(String::new(), |(_, contender)| contender.label())
     }
 
+    /// What there is to say of the view that the last frame showed: what its colours mean, and figures; of the plain picture nothing.
+    pub fn caption(&self) -> &str {
+        &self.known.caption
+    }
+
     /// The method that runs.
     pub(super) fn contender(&self) -> Option<&Contender> {
         self.running.as_ref().map(|(_, contender)| contender)

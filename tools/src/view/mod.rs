@@ -30,6 +30,18 @@ const SCRIPTED_FRAME_S: f64 = 1.0 / 60.0;
 /// The longest that a slow frame may carry the camera on.
 const LONGEST_STEP: Duration = Duration::from_millis(250);
 
+/// No window system here knows a wider or higher window: X11 counts pixels in 16 bits with a sign, and winit panics at more.
+const LARGEST_SIDE: u32 = 32767;
+
+/// Can a window have this size?
+fn check_size(size: [u32; 2]) -> Result<()> {
+    let [width, height] = size;
+    if width.max(height) > LARGEST_SIDE {
+        bail!("{width}x{height}: a window has at most {LARGEST_SIDE} pixels a side");
+    }
+    Ok(())
+}
+
 /// What a window is opened with.
 #[derive(Clone, Debug)]
 pub struct ViewOptions {
@@ -63,6 +75,7 @@ impl ViewOptions {
 pub fn run(wish: ViewOptions) -> Result<()> {
     let options = &wish.session;
     let scene_options = scenes::SceneOptions { scale: options.scale, seed: options.seed, detail: options.detail };
+    check_size(options.size).context("--size")?;
     let event_loop = event_loop()?;
     let scene = scenes::open(&options.scene, &scene_options)?;
     if wish.is_scripted() && wish.capture.is_some_and(|frame| frame >= wish.session.frames) {

@@ -18,6 +18,8 @@ use shaders::types::PyramidLevel;
 const IN_VAIN: Pen = Pen { colour: [255, 90, 60], cover: 0.6, width: 1 };
 const LOST: Pen = Pen { colour: [255, 0, 255], cover: 1.0, width: 2 };
 
+const NEAR_IS_BRIGHT: &str = "near is bright";
+
 /// A warp that goes on from frame to frame.
 pub(super) struct Warping {
     warp: Warp,
@@ -51,8 +53,14 @@ pub(super) fn of(left: &mut Left<'_>, controls: &Controls, view: &View, images: 
     }
     match controls.show {
         Show::Colour | Show::FalsePositives => Ok(Picture::colour(images)),
-        Show::Depth => Ok(Picture::depth(images, DepthScale::of(&images.depth))),
-        Show::Items => Ok(Picture::items(images)),
+        Show::Depth => {
+            *left.caption = format!("{NEAR_IS_BRIGHT}; black: nothing was drawn");
+            Ok(Picture::depth(images, DepthScale::of(&images.depth)))
+        }
+        Show::Items => {
+            *left.caption = "one colour an object".to_owned();
+            Ok(Picture::items(images))
+        }
         Show::Overdraw => overdraw(left, view, images),
         Show::Farthest => farthest_level(left, controls.level, images),
         Show::Groups | Show::Boxes => boxes(left, controls.show, view, images),
@@ -91,7 +99,7 @@ fn farthest_level(left: &mut Left<'_>, level: u32, images: &FrameImages) -> Resu
     let place = level as usize % levels.len().max(1);
     let PyramidLevel { first, width, height } = levels[place];
     *left.caption = format!(
-        "{:?}, level {place} of {} (L): {width}x{height} texels, of this frame's depth",
+        "{:?}, level {place} of {} (L): {width}x{height} texels, of this frame's depth; {NEAR_IS_BRIGHT}",
         kind.structure,
         levels.len()
     );
@@ -144,8 +152,15 @@ fn warped(left: &mut Left<'_>, show: Show, view: &View, images: &FrameImages) ->
         let stages = f.finish().context("depth warping")?.stages;
         let stages = stages.into_iter().map(|stage| (stage.label, stage.ms)).collect();
         let warped = Warped::of(&warping.warp, &warping.warped, warping.settings, images, stages)?;
-        picture = if show == Show::Motion { warped.motion() } else { warped.error() };
-        *left.caption = warped.caption()?;
+        let legend;
+        (picture, legend) = match show {
+            Show::Motion => (warped.motion(), "where each pixel goes: direction as hue, length as brightness"),
+            _ => (
+                warped.error(),
+                "red: nearer than real, may hide what shows; blue: farther, hides less; dark blue: a hole",
+            ),
+        };
+        *left.caption = format!("{legend}\n{}", warped.caption()?);
     }
     let mut f = session.gpu.frame();
     warping.warp.keep(&mut f, &session.world, view, &session.targets.with_items());

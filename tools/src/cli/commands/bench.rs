@@ -7,7 +7,7 @@ use crate::results::trace;
 use crate::results::{parts_table, stages_table, table, Results};
 use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, Seen};
 use crate::run::capture::CaptureOrder;
-use crate::run::methods::{parse_methods, particular_methods};
+use crate::run::methods::{parse_methods, particular_methods, Chosen};
 use crate::run::session::{cache_folder, Session};
 use anyhow::{bail, Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -21,8 +21,9 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
     if arguments.methods.method == "all" {
         let (taken, left_out) = particular_methods(&session.scene, &arguments.methods.sets())?;
-        left_out.iter().for_each(|line| eprintln!("{line}"));
         methods.extend(taken);
+        let refused = without_refusing(&mut methods, &session);
+        left_out.iter().chain(&refused).for_each(|line| eprintln!("{line}"));
     }
     let bar = Bar::new(&session)?;
     let options = BenchOptions {
@@ -47,6 +48,21 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let shown = write_views(arguments, &results, gallery.as_ref());
     print(arguments, &results)?;
     shown
+}
+
+/// Takes those away that need one sample a pixel where there are several; a line for each.
+fn without_refusing(methods: &mut Chosen, session: &Session) -> Vec<String> {
+    let mut left_out = Vec::new();
+    if session.targets.samples() > 1 {
+        methods.retain(|(entry, _)| match entry.needs_one_sample(&session.world) {
+            None => true,
+            Some(why) => {
+                left_out.push(format!("left out: method '{}' needs one sample a pixel: {why}", entry.id));
+                false
+            }
+        });
+    }
+    left_out
 }
 
 /// Where the report's pictures are collected, if there will be any.
