@@ -326,12 +326,14 @@ impl Frame {
         self.stalled("frame/read_back", |_| buffer.read())
     }
 
-    /// Does on the host what a stage would do on the device: a row of its own, and part of the frame's time, as the device has nothing to
-    /// do meanwhile.
+    /// Does on the host what a stage would do on the device: a row of its own, whose name starts with `frame/` as it is in no capture, and
+    /// part of the frame's time instead of the host's for recording, as the device has nothing to do meanwhile.
     pub fn on_host<T>(&mut self, label: &str, work: impl FnOnce() -> T) -> T {
         let since = Instant::now();
         let done = work();
-        let ms = since.elapsed().as_secs_f64() * 1e3;
+        let took = since.elapsed();
+        self.host_since += took;
+        let ms = took.as_secs_f64() * 1e3;
         if self.first_submit.is_none() {
             self.before_submit_ms += ms;
         }

@@ -34,7 +34,7 @@ impl HostRays {
     }
 
     pub fn cast(&mut self, f: &mut Frame, world: &World, view: &SeedView, seen: BufferRef<u32>) -> Result<()> {
-        let met = self.meet(world, view);
+        let met = f.on_host("frame/cast_rays", || self.meet(world, view));
         self.met.write(&met)?;
         let met_count = met.len() as u32;
         f.dispatch(seeds::MarkMet { met: self.met.all(), seen, met_count }, met_count);

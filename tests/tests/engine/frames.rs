@@ -84,6 +84,36 @@ fn fills_copies_and_reads_in_the_middle_come_in_order() {
 }
 
 #[test]
+fn what_the_host_does_for_the_device_counts_as_the_frames_time() {
+    let gpu = gpu();
+    let buffer = words(&gpu, &[1; 64]);
+    let long = std::time::Duration::from_millis(40);
+    let work = || std::thread::sleep(long);
+    let long_ms = long.as_secs_f64() * 1e3;
+
+    let mut f = gpu.frame();
+    f.on_host("frame/work", work);
+    f.dispatch(spin(&buffer), 64);
+    let before = f.finish().unwrap();
+    let mut f = gpu.frame();
+    f.dispatch(spin(&buffer), 64);
+    f.read(&buffer).unwrap();
+    f.on_host("frame/work", work);
+    f.dispatch(spin(&buffer), 64);
+    let between = f.finish().unwrap();
+    for report in [before, between] {
+        let row = report.stages.iter().find(|stage| stage.label == "frame/work").expect("a row of its own");
+        assert!(row.ms >= long_ms && report.frame_ms >= row.ms, "{} of {}", row.ms, report.frame_ms);
+        assert!(report.frame_ms < 2.0 * row.ms, "counted twice: {} ms", report.frame_ms);
+    }
+    let mut f = gpu.frame();
+    work();
+    f.dispatch(spin(&buffer), 64);
+    let recording = f.finish().unwrap();
+    assert!(recording.host_ms >= long_ms && recording.frame_ms < long_ms, "recording is no part of the frame's time");
+}
+
+#[test]
 fn labels_name_the_stage_and_its_part_of_the_frame() {
     let gpu = gpu();
     let buffer = words(&gpu, &[1; 64]);

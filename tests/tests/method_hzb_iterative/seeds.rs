@@ -73,6 +73,23 @@ fn a_cut_draws_little() {
     assert!(!law(&without).is_empty(), "nothing tells what stands in front, and the law does not notice");
 }
 
+/// The host's rays are part of what a frame costs: else a cut would look cheaper than it is.
+#[test]
+fn the_hosts_rays_are_a_row_of_the_frame() {
+    let gpu = gpu();
+    let case = worlds::walled(200);
+    for (rays, expected) in [("host", 1), ("device", 0)] {
+        let mut lab = harness::Lab::new(&gpu, &case);
+        let (_, sets) = lab.truths(&case.shots);
+        let mut method = lab.make(&setting(&[("rays", rays)]), &sets);
+        let takes = lab.film(&mut *method, &case.shots[..1]);
+        let report = &takes[0].report;
+        let rows: Vec<_> = report.stages.iter().filter(|stage| stage.label == "frame/cast_rays").collect();
+        assert_eq!(rows.len(), expected, "{rays}: {:?}", report.stages);
+        assert!(rows.iter().all(|row| row.ms > 0.0 && row.ms <= report.frame_ms));
+    }
+}
+
 #[test]
 fn rays_follow_what_moves() {
     let gpu = gpu();
