@@ -681,7 +681,7 @@ impl GraphicsStage for TestBoxes {}
 pub struct TestObjects {
     /// `bounds` in GLSL.
     pub bounds: BufferRef<types::Bounds>,
-    /// What the last frame saw.
+    /// What was drawn a step earlier, if it was due there.
     pub seen: BufferRef<u32>,
     /// `reach` in GLSL.
     pub reach: BufferRef<u32>,
@@ -697,6 +697,8 @@ pub struct TestObjects {
     pub shown: BufferRef<u32>,
     /// By kind of primitive and place in the list.
     pub counts: BufferRef<u32>,
+    /// What is known to show: seen, or drawn since who is seen was found out.
+    pub known: BufferRef<u32>,
     /// `step` in GLSL.
     pub step: u32,
     /// Specialization constants.
@@ -720,6 +722,7 @@ impl Stage for TestObjects {
             BindingInfo { name: "blocks", binding: 6, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "shown", binding: 7, kind: BindingKind::StorageBuffer, access: Access::Write },
             BindingInfo { name: "counts", binding: 8, kind: BindingKind::StorageBuffer, access: Access::ReadWrite },
+            BindingInfo { name: "known", binding: 9, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 4,
         constants: &[
@@ -751,6 +754,7 @@ impl Stage for TestObjects {
                 self.blocks.into(),
                 self.shown.into(),
                 self.counts.into(),
+                self.known.into(),
             ],
             bytemuck::bytes_of(&push),
             vec![
@@ -784,7 +788,7 @@ pub struct TestObjectsConstants {
     pub footprint_texels: u32,
     /// Something was drawn before: there is a pyramid of this frame.
     pub behind: bool,
-    /// What the last frame did not see must show by its box as well.
+    /// What was not known to show must show by its box as well.
     pub boxes: bool,
     /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
     pub kind_count: u32,

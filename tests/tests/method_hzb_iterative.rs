@@ -126,7 +126,7 @@ fn a_list_that_serves_again_is_made_of_owners_every_few_frames() {
     };
     let case = case.filmed((0..9).map(shot).collect());
     let mut lab = harness::Lab::new(&gpu, &case);
-    let mut method = lab.make(&setting(&[("ranges", "1"), ("rays", "off")]), &Default::default());
+    let mut method = lab.make(&setting(&[("ranges", "1"), ("rays", "off"), ("every", "4")]), &Default::default());
     let (mut steps, mut anew) = (Vec::new(), Vec::new());
     for (frame, shot) in case.shots.iter().enumerate() {
         let take = lab.take(&mut *method, shot, frame);
@@ -142,6 +142,28 @@ fn a_list_that_serves_again_is_made_of_owners_every_few_frames() {
     let [(ahead, came), (_, again)] = [3, 4].map(|frame: usize| (steps[frame][0], steps[frame][1]));
     assert!(came > 10 && again > 10, "{steps:?}");
     assert!(steps[5][0] > ahead && steps[5][1] < again, "{steps:?}");
+}
+
+/// Where cut follows cut, what a frame finds out of owners would be forgotten unread.
+#[test]
+fn owners_are_looked_at_where_a_next_frame_reads_of_them() {
+    let gpu = gpu();
+    let case = worlds::walled(100);
+    let from = |x: f64, z: f64| scenes::Shot {
+        pose: scenes::Pose::looking_at(glam::DVec3::new(x, 3.0, z), glam::DVec3::ZERO),
+        ..case.shots[0]
+    };
+    let shots = [from(0.7, 7.0), from(0.7, -7.0), from(7.0, 0.7), from(7.0, 0.7001), from(7.0, 0.7002), from(0.7, 7.0)];
+    let case = case.filmed(shots.to_vec());
+    let mut lab = harness::Lab::new(&gpu, &case);
+    let mut method = lab.make(&Subject::named("hzb-iterative"), &Default::default());
+    let takes = lab.film(&mut *method, &case.shots);
+    let looked = takes.iter().map(|take| !take.report.skips.iter().any(|skip| skip.label == "eovc/filter_occluders"));
+    assert_eq!(
+        looked.collect::<Vec<_>>(),
+        [true, false, false, true, false, true],
+        "a cut, two more, calm, calm, a cut"
+    );
 }
 
 #[test]

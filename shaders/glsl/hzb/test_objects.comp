@@ -11,10 +11,10 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 // Something was drawn before: there is a pyramid of this frame.
 layout(constant_id = 1) const bool BEHIND = true;
-// What the last frame did not see must show by its box as well.
+// What was not known to show must show by its box as well.
 layout(constant_id = 2) const bool BOXES = true;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
-// What the last frame saw.
+// What was drawn a step earlier, if it was due there.
 layout(set = 0, binding = 1, scalar) readonly buffer Seen { uint items[]; } seen;
 layout(set = 0, binding = 2, scalar) readonly buffer Reach { uint items[]; } reach;
 layout(set = 0, binding = 3, scalar) readonly buffer Views { StepView items[]; } views;
@@ -25,6 +25,8 @@ layout(set = 0, binding = 6, scalar) readonly buffer Blocks { uint words[]; } bl
 layout(set = 0, binding = 7, scalar) writeonly buffer Shown { uint items[]; } shown;
 // By kind of primitive and place in the list.
 layout(set = 0, binding = 8, scalar) buffer Counts { uint items[]; } counts;
+// What is known to show: seen, or drawn since who is seen was found out.
+layout(set = 0, binding = 9, scalar) readonly buffer Known { uint items[]; } known;
 layout(push_constant, scalar) uniform Push { uint step; } push;
 #include "hidden.glsl"
 
@@ -44,7 +46,7 @@ void main() {
     if (is_due && BEHIND) is_shown = is_visible(bound, all.view, all.coarsest_level);
     else if (is_due) is_shown = (bound.flags & OBJECT_ALWAYS_KEPT) != 0u || !left_out(clip_from_bounds(bound, all.view), bound.flags, all.view);
     // A box that reaches the near plane cannot be rasterised.
-    bool is_tested = BOXES && BEHIND && is_shown && seen.items[object] == 0u && (bound.flags & OBJECT_ALWAYS_KEPT) == 0u
+    bool is_tested = BOXES && BEHIND && is_shown && known.items[object] == 0u && (bound.flags & OBJECT_ALWAYS_KEPT) == 0u
         && !crosses_near(clip_from_bounds(grown(bound, all.view), all.view));
     shown.items[object] = !is_shown ? STEP_HIDDEN : is_tested ? STEP_TESTED : STEP_SHOWN;
     if (is_shown) atomicAdd(counts.items[kind_of(object, all) * all.block_count + place], 1u);

@@ -212,15 +212,16 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
         input.all.block_count = blocks as u32;
         let reach = twin::measure_blocks(&input.bounds, &input.all).1;
         let (step, behind) = (number as u32 % 3, number % 4 != 0);
-        let seen: Vec<u32> = (0..BOXES).map(|_| random.below(2) as u32).collect();
+        let [seen, known] =
+            [2, 3].map(|one_in| -> Vec<u32> { (0..BOXES).map(|_| u32::from(random.below(one_in) == 0)).collect() });
         let object_meshes: Vec<u32> = (0..BOXES).map(|_| random.below(40) as u32).collect();
         let list = twin::list_blocks(&(0..blocks).map(|_| u32::from(random.below(3) > 0)).collect::<Vec<_>>());
         let listed = &list[LISTED_HEADER as usize..];
-        let found = run(&gpu, &input, (&seen, &object_meshes, &meshes), &list, reach, (step, behind));
+        let found = run(&gpu, &input, (&seen, &known, &object_meshes, &meshes), &list, reach, (step, behind));
 
         let pyramid = behind.then(|| input.test());
-        let twin =
-            twin::test_objects((&input.bounds, &seen), listed, reach, &input.all, pyramid.as_ref(), (step, true));
+        let objects = (&input.bounds[..], &seen[..], &known[..]);
+        let twin = twin::test_objects(objects, listed, reach, &input.all, pyramid.as_ref(), (step, true));
         // What the GPU made of each object; small meshes are drawn without a test of their box.
         let small = |object: usize| meshes[object_meshes[object] as usize].index_count <= SMALL;
         let mut becomes = vec![STEP_HIDDEN; BOXES];
@@ -246,7 +247,7 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
             assert_eq!((found.totals[kind], found.boxes[kind].instance_count), (total, total), "{name}, kind {kind}");
             assert_eq!(found.commands[objects.start..][..expected.len()], expected, "{name}, kind {kind}");
         }
-        let marked = becomes.iter().map(|becomes| u32::from(*becomes == STEP_SHOWN));
+        let marked = becomes.iter().zip(&known).map(|(becomes, known)| *known | u32::from(*becomes == STEP_SHOWN));
         assert!(found.visible.iter().copied().eq(marked), "{name}: what is drawn for sure counts as seen");
         let drawn = found.totals.iter().any(|total| *total > 0);
         assert_eq!(found.grids, if drawn { [9, 2, 1] } else { [0, 2, 1] }, "{name}");
@@ -271,7 +272,7 @@ struct Found {
 fn run(
     gpu: &Gpu,
     input: &Input,
-    (seen, object_meshes, meshes): (&[u32], &[u32], &[MeshRange]),
+    (seen, known, object_meshes, meshes): (&[u32], &[u32], &[u32], &[MeshRange]),
     list: &[u32],
     reach: twin::Reach,
     (step, behind): (u32, bool),
@@ -281,7 +282,7 @@ fn run(
     let (levels, texels) = (stored(gpu, &input.levels), stored(gpu, &input.texels));
     let (seen, object_meshes, meshes) = (stored(gpu, seen), stored(gpu, object_meshes), stored(gpu, meshes));
     let reach = stored(gpu, &[reach.farthest.to_bits(), !reach.nearest.to_bits()]);
-    let (shown, visible) = (words(gpu, BOXES), stored(gpu, &vec![0u32; BOXES]));
+    let (shown, visible) = (words(gpu, BOXES), stored(gpu, known));
     let (totals, grids) = (words(gpu, 3), words(gpu, 3));
     let (counts, starts) = (stored(gpu, &vec![0u32; 3 * block_count as usize]), words(gpu, 3 * block_count as usize));
     let (boxes, commands) =
@@ -298,6 +299,7 @@ fn run(
         blocks: list.all(),
         shown: shown.all(),
         counts: counts.all(),
+        known: visible.all(),
         step,
         constants: hzb::TestObjectsConstants {
             footprint_texels: 4,

@@ -69,13 +69,13 @@ pub const OPTIONS: &[OptionInfo] = &[
     },
     OptionInfo {
         name: "every",
-        default: "4",
+        default: "8",
         values: "1..=64",
         help: "how many frames from one that finds out by the item buffer what is still seen to the next; what comes into view is added",
     },
     OptionInfo {
         name: "texels",
-        default: "4",
+        default: "8",
         values: "2..=16",
         help: "pyramid texels a footprint may touch in each direction: more is tighter and slower",
     },
@@ -113,6 +113,8 @@ struct Iterative {
     first_step: u32,
     /// Nothing was seen before this frame.
     afresh: bool,
+    /// Nor before the last one.
+    was_afresh: bool,
     still: Still,
 }
 
@@ -134,6 +136,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         ranges: 1,
         first_step: 0,
         afresh: true,
+        was_afresh: false,
         still: Still::new(options).settled_after(SETTLED_AFTER),
     }))
 }
@@ -150,9 +153,8 @@ impl Method for Iterative {
         if self.still.holds(world, view) {
             return self.same_again(f, world, view, target);
         }
+        self.afresh = self.starts_afresh(view);
         let pyramid = Pyramid::sized(&mut self.pyramid, &self.gpu, target.size, self.finest, self.steps.texels())?;
-        // What was seen before a cut is no better than the rest.
-        self.afresh |= self.hurry.is_cut(view) || (self.seeds.is_some() && self.hurry.new_share(view) > STALE_SHARE);
         self.ranges = self.hurry.ranges(view);
         // Where the last frame tells little, rays tell of what stands in front, and then one range will do.
         let casts = self.seeds.is_some() && (self.afresh || self.ranges > 1);
@@ -160,7 +162,11 @@ impl Method for Iterative {
             self.ranges = self.hurry.fixed().unwrap_or(1);
         }
         self.first_step = if self.afresh && !casts { 1 } else { 0 };
-        self.until_filtering = if filters { self.every - 1 } else { self.until_filtering - 1 };
+        self.until_filtering = match (filters, self.afresh) {
+            (true, _) => self.every - 1,
+            (false, true) => 0,
+            (false, false) => self.until_filtering - 1,
+        };
         self.steps.look(world, view, depth_plane(view), self.ranges, pyramid)?;
 
         if self.afresh {
@@ -198,7 +204,7 @@ impl Method for Iterative {
         self.ahead_holds = in_one && !filters;
         f.part("");
         self.filter(f, filters, target)?; // 7. every few frames: who owns a pixel
-        self.afresh = false;
+        self.was_afresh = std::mem::take(&mut self.afresh);
         Ok(())
     }
 
@@ -207,15 +213,25 @@ impl Method for Iterative {
         self.ahead_holds = false;
         self.hurry.forget();
         self.afresh = true;
+        self.was_afresh = false;
         self.until_filtering = 0;
         Ok(self.seen.write(&vec![0; self.seen.len()])?)
     }
 }
 
 impl Iterative {
-    /// Every few frames, where there is nothing to go by, and while nothing changes: then how long that lasts does not show in what follows.
+    /// What was seen before a cut is no better than the rest.
+    fn starts_afresh(&self, view: &View) -> bool {
+        self.afresh || self.hurry.is_cut(view) || (self.seeds.is_some() && self.hurry.new_share(view) > STALE_SHARE)
+    }
+
+    /// Every few frames, at a cut, and while nothing changes: then how long that lasts does not show in what follows. Where cut follows cut it
+    /// would be in vain: it waits for the first frame that is none.
     fn is_filtering_due(&self, world: &World, view: &View) -> bool {
-        self.until_filtering == 0 || self.afresh || self.hurry.is_cut(view) || self.still.same(world, view)
+        if self.starts_afresh(view) {
+            return !self.was_afresh;
+        }
+        self.until_filtering == 0 || self.still.same(world, view)
     }
 
     /// What is seen is whoever owns a pixel of the item buffer (EOVC thesis III.6.2).

@@ -201,6 +201,7 @@ impl Steps {
             blocks,
             shown: self.shown.all(),
             counts,
+            known: step.drawn,
             step: number,
             constants: hzb::TestObjectsConstants {
                 footprint_texels,

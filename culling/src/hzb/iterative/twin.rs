@@ -91,9 +91,10 @@ pub fn list_blocks(due: &[u32]) -> Vec<u32> {
     across.into_iter().chain([count.div_ceil(64), 1, 1, 0]).chain(listed).collect()
 }
 
-/// What becomes of each object of the listed blocks in a step: STEP_*; of all others nothing is said. Twin of `hzb/test_objects`.
+/// What becomes of each object of the listed blocks in a step: STEP_*; of all others nothing is said. By object, `seen`: it is due a step
+/// earlier; `known`: it is known to show, and needs no box. Twin of `hzb/test_objects`.
 pub fn test_objects(
-    (bounds, seen): (&[Bounds], &[u32]),
+    (bounds, seen, known): (&[Bounds], &[u32], &[u32]),
     listed: &[u32],
     reach: Reach,
     all: &StepView,
@@ -101,7 +102,7 @@ pub fn test_objects(
     (step, boxes): (u32, bool),
 ) -> Vec<Option<u32>> {
     let becomes = |object: usize| {
-        let (bound, seen) = (&bounds[object], seen[object] != 0);
+        let (bound, seen, known) = (&bounds[object], seen[object] != 0, known[object] != 0);
         let kept = bound.flags & OBJECT_ALWAYS_KEPT != 0;
         let begin = if kept { 0.0 } else { depth_of(bound, &all.view, all.depth_plane) };
         if step != reach.range_of(begin, all) + u32::from(!seen) {
@@ -112,7 +113,7 @@ pub fn test_objects(
             None => kept || !left_out(&clip_from_bounds(bound, &all.view), bound.flags, &all.view),
         };
         let rasterises = || !kept && !crosses_near(&clip_from_bounds(&grown(bound, &all.view), &all.view));
-        match (shown, boxes && pyramid.is_some() && !seen && shown && rasterises()) {
+        match (shown, boxes && pyramid.is_some() && !known && shown && rasterises()) {
             (false, _) => STEP_HIDDEN,
             (true, false) => STEP_SHOWN,
             (true, true) => STEP_TESTED,
