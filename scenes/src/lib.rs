@@ -19,7 +19,7 @@ mod path;
 pub mod procedural;
 mod texture;
 
-pub use animation::Motion;
+pub use animation::{Motion, MovingBounds, MovingBoxes};
 pub use bounds::WorldBounds;
 pub use camera::{Camera, Pose, Projection};
 pub use check::MOST_OBJECTS;
