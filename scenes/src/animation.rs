@@ -4,13 +4,11 @@
 //! repeated and any frame can be asked for on its own.
 
 mod nodes;
-mod spread;
-mod sweep;
 mod track;
 
 pub(crate) use nodes::pose_of;
 pub use nodes::{AnimatedNode, Attachment, Local, NodeAnimation};
-pub use sweep::{MovingBounds, MovingBoxes};
+pub(crate) use track::Between;
 pub use track::{Interpolate, Interpolation, Track};
 
 use crate::camera::Pose;

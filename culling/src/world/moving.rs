@@ -41,7 +41,9 @@ impl Moving {
             return Ok(None);
         }
         let boxes = MovingBoxes::new(scene, &flat.world_bounds, mode);
-        for (place, (scene_object, transform)) in transforms.iter().enumerate() {
+        // For each frame anew: until the first time is set, objects have the bounds of where they are.
+        let known = transforms.iter().enumerate().filter(|_| mode != MovingBounds::PerFrame);
+        for (place, (scene_object, transform)) in known {
             let object = object_of_scene[*scene_object as usize] as usize;
             let mesh = flat.scene_meshes[object];
             flat.boxes[object] = boxes.at(place, 0.0, &flat.world_bounds, (mesh, transform));

@@ -59,7 +59,7 @@ pub struct Track<T> {
 }
 
 /// What gives a track's values between two times: see [`Track::between`].
-pub(super) enum Between<T> {
+pub(crate) enum Between<T> {
     /// One value.
     Held(T),
     /// A part, from one `t` to the other, of the way from one value to the next.
@@ -96,7 +96,7 @@ impl<T: Interpolate> Track<T> {
     }
 
     /// Times of all keys in seconds, ascending.
-    pub(super) fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] {
         &self.times
     }
 
@@ -116,7 +116,7 @@ impl<T: Interpolate> Track<T> {
     }
 
     /// What gives the values from one time on until before another, if there is no key after the first and before the other.
-    pub(super) fn between(&self, from: f64, until: f64) -> Between<T> {
+    pub(crate) fn between(&self, from: f64, until: f64) -> Between<T> {
         // The number of keys at or before the time. Not a number counts as before all.
         let after = self.times.partition_point(|&time| time <= from);
         if after == 0 {

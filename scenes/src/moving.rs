@@ -12,12 +12,13 @@
 //! `(a·z) a ± sqrt((z - (a·z) a)² + (a × z)²)`, component by component. Its sides are largest values of functions that are linear in z, so
 //! convex: the corners of the mesh's box have the largest again.
 
-use super::nodes::{AnimatedNode, Attachment, NodeAnimation};
-use super::spread::{stretch, Span};
-use super::{Motion, Orbit};
+mod spread;
+
+use crate::animation::{AnimatedNode, Attachment, Motion, NodeAnimation, Orbit};
 use crate::bounds::WorldBounds;
 use crate::model::{Aabb, Scene};
 use glam::{DAffine3, DVec3};
+use spread::{stretch, Span};
 
 /// How the bounds of moving objects are had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -16,8 +16,7 @@
 //! Two unit quaternions that are c apart turn no vector v to places farther than 2 c |v| from each other (and 2 |v| always). One of
 //! length n acts as I + n² (R - I), so it is off by at most 2 |n² - 1| |v|.
 
-use super::nodes::{AnimatedNode, Local};
-use super::track::{Between, Track};
+use crate::animation::{AnimatedNode, Between, Local, Track};
 use crate::model::Aabb;
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
