@@ -42,6 +42,8 @@ pub struct Work {
     pub node_visits: u64,
     /// Rays not cast because all that they could meet had been met.
     pub early_stops: u64,
+    /// Nodes of a hierarchy that were fitted to bounds that had changed.
+    pub refits: u64,
 }
 
 /// The boxes that a frame rasterised to find out what is visible: world bounds in metres, before they are grown to cover all

@@ -35,6 +35,7 @@ pub struct Tree {
     unbounded: Vec<u32>,
     flat: Vec<TreeNode>,
     builds: u32,
+    refitted: u64,
     revision: u64,
 }
 
@@ -63,16 +64,19 @@ impl Tree {
             unbounded,
             flat: nodes,
             builds: 1,
-            revision: world.revision(),
+            refitted: 0,
+            revision: world.bounds_revision(),
         })
     }
 
     /// Follows objects that have moved: refitted, and built anew once refitting has made it too costly to traverse.
     pub fn follow(&mut self, world: &World) -> Result<()> {
-        if self.revision == world.revision() {
+        self.refitted = 0;
+        if self.revision == world.bounds_revision() {
             return Ok(());
         }
-        self.revision = world.revision();
+        self.revision = world.bounds_revision();
+        self.refitted = self.bvh.nodes().len() as u64;
         let refitted = self.bvh.refit(world.host_bounds());
         if refitted.is_err() || self.bvh.needs_rebuild(REBUILD_FACTOR) {
             let bvh = build(world, self.options)?;
@@ -85,6 +89,16 @@ impl Tree {
         }
         self.flat = flatten(&self.bvh, &self.flags);
         Ok(self.nodes.write(&self.flat)?)
+    }
+
+    /// Notes that a frame has no need of the tree.
+    pub fn rest(&mut self) {
+        self.refitted = 0;
+    }
+
+    /// Nodes that were fitted to bounds that had changed, in the last frame.
+    pub fn refitted(&self) -> u64 {
+        self.refitted
     }
 
     /// The hierarchy on the host.

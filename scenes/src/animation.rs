@@ -8,6 +8,7 @@ mod track;
 
 pub(crate) use nodes::pose_of;
 pub use nodes::{AnimatedNode, Attachment, Local, NodeAnimation};
+pub(crate) use track::Between;
 pub use track::{Interpolate, Interpolation, Track};
 
 use crate::camera::Pose;

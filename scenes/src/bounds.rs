@@ -35,6 +35,11 @@ impl Aabb {
         bounds
     }
 
+    /// The box that reaches so much farther in each direction.
+    pub fn widened(self, by: DVec3) -> Self {
+        Aabb { min: self.min - by, max: self.max + by }
+    }
+
     /// The middle.
     pub fn centre(&self) -> DVec3 {
         0.5 * self.min + 0.5 * self.max
@@ -111,6 +116,13 @@ impl WorldBounds {
         self.reaches[mesh as usize].transformed(world_from_object)
     }
 
+    /// How much wider bounds can be for rounding under any transform that makes no vector more than `stretch` times as long: what a row of
+    /// it times the mesh's largest coordinates is, is at most the product of their lengths.
+    pub(crate) fn most_padding(&self, mesh: u32, stretch: f64) -> f64 {
+        let largest = DVec3::from_array(self.reaches[mesh as usize].largest);
+        TRANSFORM_ERROR * stretch * largest.length() + SMALLEST * (3.0 * stretch + largest.element_sum() + 6.0)
+    }
+
     /// The box of a mesh in object space; the point at its origin if it has no vertices.
     ///
     /// # Panics
@@ -133,6 +145,9 @@ impl WorldBounds {
 /// product, and of two sums. (1 + u)^4 - 1 < 4u (1 + 2^-16), and the excess over 4u also covers the few roundings of this
 /// file in f64 (below 2^-49 together). A fused multiply-add rounds less often.
 const TRANSFORM_ERROR: f64 = 4.0 / 16_777_216.0 * (1.0 + 1.0 / 65_536.0);
+
+/// Devices may flush numbers below this to zero: of M, of p, each product, and both sums.
+const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
 /// How far a mesh reaches in each of the 26 directions, by [`direction_index`]; entry 13 is unused.
 #[derive(Clone, Debug)]
@@ -209,8 +224,6 @@ impl Reach {
 
     /// How far a vertex may be off along one world axis. Zero where the row is: then the GPU's result is exact.
     fn padding(&self, row: [f64; 3], translation: f64) -> f64 {
-        // Devices may flush numbers below this to zero: of M, of p, each product, and both sums.
-        const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
         let mut size = 0.0;
         let mut flushed = 0.0;
         for (weight, largest) in row.map(f64::abs).into_iter().zip(self.largest) {

@@ -99,4 +99,5 @@ pub const STAGES: &[&StageInfo] = &[
     <woc::HoldCandidates as Stage>::INFO,
     <woc::LeaveRapid as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
+    <world::MoveTransforms as Stage>::INFO,
 ];

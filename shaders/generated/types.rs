@@ -455,6 +455,22 @@ const _: () = {
     assert!(size_of::<MovedObject>() == 108);
 };
 
+/// The same where its bounds stay as they were.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MovedTransform {
+    /// `index` in GLSL.
+    pub index: u32,
+    /// `object` in GLSL.
+    pub object: Object,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MovedTransform, index) == 0);
+    assert!(std::mem::offset_of!(MovedTransform, object) == 4);
+    assert!(size_of::<MovedTransform>() == 68);
+};
+
 /// One mesh primitive in the world. The translation is split in two floats (origin_high + origin_low), so that the
 /// difference to the camera keeps about 48 bits: nothing shakes 10^6 m from the origin.
 #[repr(C)]

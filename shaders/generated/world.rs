@@ -64,3 +64,55 @@ const _: () = {
     assert!(std::mem::offset_of!(MoveObjectsPush, move_count) == 0);
     assert!(size_of::<MoveObjectsPush>() == 4);
 };
+
+/// Puts the transforms of moving objects in their places whose bounds stay: those that hold more than one place.
+/// Twin: culling/src/world/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct MoveTransforms {
+    /// `moves` in GLSL.
+    pub moves: BufferRef<types::MovedTransform>,
+    /// `objects` in GLSL.
+    pub objects: BufferRef<types::Object>,
+    /// `move_count` in GLSL.
+    pub move_count: u32,
+}
+
+impl Stage for MoveTransforms {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "world/move_transforms",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/world/move_transforms.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "moves", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "objects", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 4,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = MoveTransformsPush { move_count: self.move_count };
+        BoundStage::new(Self::INFO, vec![self.moves.into(), self.objects.into()], bytemuck::bytes_of(&push), vec![])
+    }
+}
+
+impl ComputeStage for MoveTransforms {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MoveTransformsPush {
+    move_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(MoveTransformsPush, move_count) == 0);
+    assert!(size_of::<MoveTransformsPush>() == 4);
+};

@@ -115,6 +115,7 @@ impl Method for Eovc {
         f.clear(target);
         self.filters_now = self.is_filtering_due(world, view);
         if self.still.holds(world, view) {
+            self.tree.rest();
             return self.same_again(f, world, view, target);
         }
         self.tree.follow(world)?;
@@ -139,7 +140,7 @@ impl Method for Eovc {
         let counted = self.counters.read()?;
         let boxes = u64::from(self.groups.groups.read_len()?) + u64::from(self.groups.singles.read_len()?);
         let [rays, node_visits, early_stops] = [0, 1, 2].map(|counter| u64::from(counted[counter]));
-        Ok(Work { boxes, rays, node_visits, early_stops, ..Work::default() })
+        Ok(Work { boxes, rays, node_visits, early_stops, refits: self.tree.refitted(), ..Work::default() })
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {

@@ -76,6 +76,7 @@ impl Method for FrustumBvh {
         f.clear(target);
         if self.still.holds(world, view) {
             self.plane_tests = 0;
+            self.tree.rest();
             self.list.skip_packing(f, Still::REASON);
         } else {
             self.tree.follow(world)?;
@@ -94,7 +95,7 @@ impl Method for FrustumBvh {
     }
 
     fn work(&self) -> Result<Work> {
-        Ok(Work { plane_tests: self.plane_tests, ..Work::default() })
+        Ok(Work { plane_tests: self.plane_tests, refits: self.tree.refitted(), ..Work::default() })
     }
 
     fn forget(&mut self) -> Result<()> {

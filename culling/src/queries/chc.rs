@@ -67,7 +67,7 @@ impl Method for Chc {
     }
 
     fn work(&self) -> Result<Work> {
-        Ok(self.on.work())
+        Ok(Work { refits: self.walk.nodes.tree.refitted(), ..self.on.work() })
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {

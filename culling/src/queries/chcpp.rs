@@ -118,7 +118,7 @@ impl Method for ChcPlusPlus {
     }
 
     fn work(&self) -> Result<Work> {
-        Ok(self.on.work())
+        Ok(Work { refits: self.walk.nodes.tree.refitted(), ..self.on.work() })
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {

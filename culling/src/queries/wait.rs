@@ -37,12 +37,10 @@ pub(super) struct HostBounds {
 
 impl HostBounds {
     pub(super) fn new(world: &World) -> Result<Self> {
-        Ok(HostBounds { bounds: world.read_bounds()?, revision: world.revision() })
+        Ok(HostBounds { bounds: world.read_bounds()?, revision: world.bounds_revision() })
     }
 
     /// Objects in view, near to far, each with its place; those that are always kept come first.
-    ///
-    /// Moved bounds are the exact boxes rounded outward anew, as `world/move_objects` was given them.
     pub(super) fn near_to_far(&mut self, world: &World, view: &View) -> Vec<(u32, Place)> {
         self.follow(world);
         let (cull, eye) = (view.cull(), view.pose.position);
@@ -63,15 +61,11 @@ impl HostBounds {
     }
 
     fn follow(&mut self, world: &World) {
-        if self.revision == world.revision() {
+        if self.revision == world.bounds_revision() {
             return;
         }
-        self.revision = world.revision();
-        for (object, transform) in world.moving() {
-            let flags = self.bounds[object as usize].flags & !OBJECT_ALWAYS_KEPT;
-            self.bounds[object as usize] =
-                crate::world::gpu_bounds(&world.host_bounds()[object as usize], &transform, flags);
-        }
+        self.revision = world.bounds_revision();
+        world.moving_bounds().for_each(|(object, bounds)| self.bounds[object as usize] = bounds);
     }
 }
 

@@ -4,6 +4,7 @@ mod blocks;
 mod detail;
 mod drawn;
 mod draws;
+mod moving;
 mod order;
 mod read;
 mod solids;
@@ -26,10 +27,11 @@ use blocks::Blocks;
 use detail::Detail;
 use engine::{Buffer, Faces, Frame, Gpu, Placement, Primitives, Surface};
 use glam::DAffine3;
-use scenes::{Cells, Scene, WorldBounds};
+use moving::Moving;
+use scenes::{Cells, MovingBounds, Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
-use shaders::types::{Bounds, DrawCommand, MeshRange, MovedObject, Object};
-use shaders::{draw, frustum, world, BufferRef, ResourceId, Stage};
+use shaders::types::{Bounds, DrawCommand, MeshRange, Object};
+use shaders::{draw, frustum, BufferRef, ResourceId, Stage};
 
 /// What of a scene's materials is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +79,7 @@ pub struct World {
     bounds: Buffer<Bounds>,
     object_meshes: Buffer<u32>,
     all_commands: Buffer<DrawCommand>,
-    moves: Option<Buffer<MovedObject>>,
+    moving: Option<Moving>,
     blocks: Blocks,
     ranges: Vec<Range>,
     /// Materials; none if each object has one colour.
@@ -108,9 +110,9 @@ struct Host {
     objects: Vec<Object>,
     flags: Vec<u32>,
     transforms: Vec<(u32, DAffine3)>,
-    move_count: u32,
     seconds: Option<f64>,
     revision: u64,
+    bounds_revision: u64,
     triangles: u64,
 }
 
@@ -128,10 +130,17 @@ impl World {
     /// # Errors
     /// As [`World::new`].
     pub fn shaded(gpu: &Gpu, scene: &Scene, shading: Shading) -> Result<Self> {
+        Self::with_bounds(gpu, scene, shading, MovingBounds::default())
+    }
+
+    /// The same, with the bounds of what moves had in a way of one's choice.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn with_bounds(gpu: &Gpu, scene: &Scene, shading: Shading, of_moving: MovingBounds) -> Result<Self> {
         scene.check()?;
-        let flat = upload::flatten(scene, shading);
+        let mut flat = upload::flatten(scene, shading);
         let storage = Placement::Storage;
-        let moving = scene.motion.dynamic_objects().len();
         let object_of_scene = upload::inverse(&flat.scene_object);
         let moving_objects: Vec<u32> =
             scene.motion.dynamic_objects().iter().map(|object| object_of_scene[*object as usize]).collect();
@@ -142,9 +151,9 @@ impl World {
         };
         let still_or_solid = |object: &&u32| (**object as usize) < solid;
         let solid_moving: Vec<u32> = moving_objects.iter().filter(still_or_solid).copied().collect();
-        let moves = if moving == 0 { None } else { Some(Buffer::new(gpu, "world.moves", moving, Placement::Upload)?) };
         let mut transforms = Vec::new();
         scene.motion.transforms_at(0.0, &mut transforms);
+        let moving = Moving::new(gpu, scene, (&mut flat, &object_of_scene), of_moving, &transforms)?;
         Ok(World {
             vertices: Buffer::with_data(gpu, "world.vertices", &flat.vertices, Placement::Geometry)?,
             indices: Buffer::with_data(gpu, "world.indices", &flat.indices, Placement::Geometry)?,
@@ -153,7 +162,7 @@ impl World {
             bounds: Buffer::with_data(gpu, "world.bounds", &flat.bounds, storage)?,
             object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
             all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
-            moves,
+            moving,
             blocks: Blocks::new(gpu, &flat.bounds[..solid], &solid_moving)?,
             detail,
             ranges: flat.ranges,
@@ -176,9 +185,9 @@ impl World {
                 flags: flat.bounds.iter().map(|bounds| bounds.flags).collect(),
                 objects: flat.objects,
                 transforms,
-                move_count: 0,
                 seconds: None,
                 revision: 0,
+                bounds_revision: 0,
                 triangles: scene.triangles(),
             },
         })
@@ -224,47 +233,9 @@ impl World {
         self.host.revision
     }
 
-    /// Puts moving objects where they are at a time in the scene; the next frames upload it. Cheap if nothing moves.
-    pub fn set_time(&mut self, scene: &Scene, seconds: f64) -> Result<()> {
-        let Some(moves) = &mut self.moves else { return Ok(()) };
-        if self.host.seconds == Some(seconds) {
-            return Ok(());
-        }
-        let host = &mut self.host;
-        scene.motion.transforms_at(seconds, &mut host.transforms);
-        let moved: Vec<MovedObject> = host
-            .transforms
-            .iter()
-            .map(|(scene_object, transform)| {
-                let index = host.object_of_scene[*scene_object as usize];
-                let mesh = host.scene_meshes[index as usize];
-                let object = upload::object(transform, host.objects[index as usize].colour);
-                host.objects[index as usize] = object;
-                host.boxes[index as usize] = host.bounds.of(mesh, transform);
-                let bounds = upload::bounds(&host.boxes[index as usize], transform, host.flags[index as usize]);
-                MovedObject { index, object, bounds }
-            })
-            .collect();
-        moves.write(&moved)?;
-        host.move_count = moved.len() as u32;
-        host.seconds = Some(seconds);
-        host.revision += 1;
-        Ok(())
-    }
-
-    /// First step of every frame: moving objects take their places.
-    pub fn update(&self, f: &mut Frame) {
-        let Some(moves) = &self.moves else {
-            f.skip(world::MoveObjects::INFO.name, "no dynamic objects");
-            return;
-        };
-        let stage = world::MoveObjects {
-            moves: moves.all(),
-            objects: self.objects.all(),
-            bounds: self.bounds.all(),
-            move_count: self.host.move_count,
-        };
-        f.dispatch(stage, self.host.move_count);
+    /// Changes whenever bounds do: equal ones mean equal bounds.
+    pub fn bounds_revision(&self) -> u64 {
+        self.host.bounds_revision
     }
 
     /// The list of blocks of [`BLOCK_OBJECTS`](shaders::types::BLOCK_OBJECTS) objects that are not outside the view volume, as
@@ -346,13 +317,6 @@ impl World {
     /// The same of all objects.
     pub fn all_host_bounds(&self) -> &[scenes::Aabb] {
         &self.host.boxes
-    }
-
-    /// Objects that can move, of those that culling methods see, and where the last call of [`World::set_time`] put them, in an order that never changes.
-    pub fn moving(&self) -> impl ExactSizeIterator<Item = (u32, DAffine3)> + '_ {
-        let object = |scene_object: u32| self.host.object_of_scene[scene_object as usize];
-        let moved = |at: &usize| self.host.transforms[*at];
-        self.host.solid_moves.iter().map(moved).map(move |(scene_object, transform)| (object(scene_object), transform))
     }
 
     /// True if it has objects with holes.

@@ -58,6 +58,16 @@ pub struct Track<T> {
     values: Vec<T>,
 }
 
+/// What gives a track's values between two times: see [`Track::between`].
+pub(crate) enum Between<T> {
+    /// One value.
+    Held(T),
+    /// A part, from one `t` to the other, of the way from one value to the next.
+    Linear { ends: [T; 2], t: [f64; 2] },
+    /// The same of a spline through two values; terms are the first, what it leaves with, the second, and what it arrives with.
+    Cubic { terms: [T; 4], length: f64, t: [f64; 2] },
+}
+
 impl<T: Interpolate> Track<T> {
     /// A track with at least one key. `times` are seconds, ascending; `values` has one a key, or three for cubic splines.
     ///
@@ -85,27 +95,44 @@ impl<T: Interpolate> Track<T> {
         (self.times[0], self.times[self.times.len() - 1])
     }
 
+    /// Times of all keys in seconds, ascending.
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
     /// The value at a time; the first or last key's outside their times.
     pub fn at(&self, seconds: f64) -> T {
+        match self.between(seconds, seconds) {
+            Between::Held(value) => value,
+            Between::Linear { ends: [a, b], t: [t, _] } => T::linear(a, b, t),
+            Between::Cubic { terms, length, t: [t, _] } => {
+                let (t2, t3) = (t * t, t * t * t);
+                T::weighted(
+                    terms,
+                    [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, length * (t3 - t2)],
+                )
+            }
+        }
+    }
+
+    /// What gives the values from one time on until before another, if there is no key after the first and before the other.
+    pub(crate) fn between(&self, from: f64, until: f64) -> Between<T> {
         // The number of keys at or before the time. Not a number counts as before all.
-        let after = self.times.partition_point(|&time| time <= seconds);
+        let after = self.times.partition_point(|&time| time <= from);
         if after == 0 {
-            return self.value(0);
+            return Between::Held(self.value(0));
         }
         let key = after - 1;
         if after == self.times.len() || self.interpolation == Interpolation::Step {
-            return self.value(key);
+            return Between::Held(self.value(key));
         }
         let length = self.times[after] - self.times[key];
-        let t = (seconds - self.times[key]) / length;
+        let t = [from, until].map(|seconds| (seconds - self.times[key]) / length);
         if self.interpolation == Interpolation::Linear {
-            return T::linear(self.value(key), self.value(after), t);
+            return Between::Linear { ends: [self.value(key), self.value(after)], t };
         }
-        let (t2, t3) = (t * t, t * t * t);
-        T::weighted(
-            [self.value(key), self.values[3 * key + 2], self.value(after), self.values[3 * after]],
-            [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, length * (t3 - t2)],
-        )
+        let terms = [self.value(key), self.values[3 * key + 2], self.value(after), self.values[3 * after]];
+        Between::Cubic { terms, length, t }
     }
 
     fn value(&self, key: usize) -> T {

@@ -72,6 +72,12 @@ struct MovedObject {
     Bounds bounds;
 };
 
+// The same where its bounds stay as they were.
+struct MovedTransform {
+    uint index;
+    Object object;
+};
+
 // VkDrawIndexedIndirectCommand. first_instance is the object's index.
 struct DrawCommand {
     uint index_count;

@@ -4,7 +4,7 @@ use culling::world::twin;
 use culling::World;
 use engine::{Buffer, Placement};
 use harness::{gpu, Random};
-use shaders::types::{Bounds, MovedObject, Object};
+use shaders::types::{Bounds, MovedObject, MovedTransform, Object};
 
 fn any_object(random: &mut Random) -> Object {
     let three = |random: &mut Random| random.vector().as_vec3().to_array();
@@ -59,6 +59,33 @@ fn moving_equals_its_twin() {
         f.finish().unwrap();
         twin::move_objects(&moves, &mut objects, &mut bounds);
         assert_eq!((on_gpu.0.read().unwrap(), on_gpu.1.read().unwrap()), (objects, bounds), "{count} objects");
+    }
+}
+
+#[test]
+fn moving_transforms_equals_its_twin() {
+    let gpu = gpu();
+    let mut random = Random::new(62);
+    for (count, move_count) in [(1, 1), (65, 64), (5000, 777)] {
+        let mut objects: Vec<Object> = (0..count).map(|_| any_object(&mut random)).collect();
+        let mut places: Vec<u32> = (0..count as u32).collect();
+        random.shuffle(&mut places);
+        let moved = |index: &u32| MovedTransform { index: *index, object: any_object(&mut random) };
+        let moves: Vec<MovedTransform> = places[..move_count].iter().map(moved).collect();
+        let on_gpu = (
+            Buffer::with_data(&gpu, "test.objects", &objects, Placement::Storage).unwrap(),
+            Buffer::with_data(&gpu, "test.moves", &moves, Placement::Upload).unwrap(),
+        );
+        let mut f = gpu.frame();
+        let stage = shaders::world::MoveTransforms {
+            moves: on_gpu.1.all(),
+            objects: on_gpu.0.all(),
+            move_count: move_count as u32,
+        };
+        f.dispatch(stage, move_count as u32);
+        f.finish().unwrap();
+        twin::move_transforms(&moves, &mut objects);
+        assert_eq!(on_gpu.0.read().unwrap(), objects, "{count} objects");
     }
 }
 

@@ -16,8 +16,8 @@ pub use colours::coloured;
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
-use picture::parse_size;
 pub use picture::SampleChoice;
+use picture::{bounds_names, parse_shading, parse_size};
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
 pub use view::{view_help, ViewArgs};
@@ -30,7 +30,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
 use culling::{OptionInfo, Shading, METHODS, PARTICULAR};
-use scenes::SceneOptions;
+use scenes::{MovingBounds, SceneOptions};
 use std::path::{Path, PathBuf};
 
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
@@ -135,6 +135,11 @@ pub struct SceneChoice {
     /// What is drawn of materials: lambert (one colour an object) or textured; if left out, what the scene has
     #[arg(long, value_name = "lambert|textured", value_parser = parse_shading)]
     pub shading: Option<Shading>,
+    /// How the box of what moves is had (GPU Gems 29.5.2): per-frame (where it is, in each frame anew: exact, brought to the device each
+    /// time), per-animation (one box for each animation of it, while that plays), union (one box for all that it ever does, never touched)
+    /// or in-place (one box for its turns and scales at rest, moved with its middle). All hold it always; looser ones draw more
+    #[arg(long, value_name = "WAY", default_value = MovingBounds::default().name(), value_parser = bounds_names())]
+    pub bounds: MovingBounds,
 }
 
 /// Which methods.
@@ -374,6 +379,7 @@ impl SceneChoice {
             size: self.size,
             shading: self.shading,
             samples: 1,
+            bounds: self.bounds,
         }
     }
 }
@@ -387,12 +393,4 @@ fn table_names() -> PossibleValuesParser {
     PossibleValuesParser::new(
         TABLES.iter().map(|table| PossibleValue::new(table.id).help(format!("{}: {}", table.name(), table.title))),
     )
-}
-
-fn parse_shading(text: &str) -> std::result::Result<Shading, String> {
-    match text {
-        "lambert" => Ok(Shading::Lambert),
-        "textured" => Ok(Shading::Textured),
-        _ => Err("it is lambert or textured".to_owned()),
-    }
 }

@@ -1,8 +1,11 @@
-//! How large and how fine a picture is.
+//! How large and how fine a picture is, and what is drawn.
 
 use crate::run::samples::SAMPLES;
 use crate::run::session::SessionOptions;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::Args;
+use culling::Shading;
+use scenes::MovingBounds;
 
 /// How finely pixels are drawn.
 #[derive(Args, Clone, Copy, Debug)]
@@ -34,5 +37,20 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     match parts {
         Some(size) if !size.contains(&0) => Ok(size),
         _ => Err("give width and height in pixels, as in 1280x720".to_owned()),
+    }
+}
+
+/// The ways to have bounds of what moves, by name.
+pub(super) fn bounds_names() -> impl TypedValueParser<Value = MovingBounds> {
+    let named = |name: String| MovingBounds::ALL.into_iter().find(|mode| mode.name() == name).unwrap_or_default();
+    PossibleValuesParser::new(MovingBounds::ALL.map(MovingBounds::name)).map(named)
+}
+
+/// What is drawn of materials.
+pub(super) fn parse_shading(text: &str) -> Result<Shading, String> {
+    match text {
+        "lambert" => Ok(Shading::Lambert),
+        "textured" => Ok(Shading::Textured),
+        _ => Err("it is lambert or textured".to_owned()),
     }
 }

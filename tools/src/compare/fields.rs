@@ -41,7 +41,7 @@ fn is_measured(name: &str, frames: &Value) -> bool {
         "false_negative_frames" | "object_error_percent" => "false_negatives",
         "culled_over_total" | "culled_over_ref" => "drawn",
         "psnr_mean_db" | "psnr_worst_db" => "psnr_db",
-        "state_changes_mean" | "waits_mean" | "plane_tests_mean" => "queries",
+        "state_changes_mean" | "waits_mean" | "plane_tests_mean" | "bounds_brought_mean" | "refits_mean" => "queries",
         other => other.strip_suffix("_mean").unwrap_or(other),
     };
     frames.get(array).and_then(Value::as_array).is_none_or(|entries| !entries.is_empty())

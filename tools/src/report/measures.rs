@@ -97,6 +97,10 @@ const WORK: &[Measure] = &[
     ),
     measure("rays", "rays cast a frame", |_, m| Some(m.rays_mean)),
     measure("boxes", "boxes rasterised a frame to test what is in them", |_, m| Some(m.boxes_mean)),
+    measure("bounds brought", "bounds of moving objects brought to the device a frame", |_, m| {
+        Some(m.bounds_brought_mean)
+    }),
+    measure("refits", "nodes of a hierarchy fitted to changed bounds a frame", |_, m| Some(m.refits_mean)),
     measure("node visits", "tree nodes that rays looked at a frame", |_, m| Some(m.node_visits_mean)),
 ];
 

@@ -90,6 +90,8 @@ impl Method {
             ("plane_tests_mean", Some(self.plane_tests_mean)),
             ("rays_mean", Some(self.rays_mean)),
             ("boxes_mean", Some(self.boxes_mean)),
+            ("bounds_brought_mean", Some(self.bounds_brought_mean)),
+            ("refits_mean", Some(self.refits_mean)),
             ("node_visits_mean", Some(self.node_visits_mean)),
             ("device_memory_mib", Some(self.device_memory_mib)),
         ];

@@ -90,6 +90,10 @@ pub struct Scene {
     /// SHA-256 of all that is drawn, in hexadecimal; empty: not known (results of before it was written).
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub hash: String,
+    /// How the bounds of what moves were had: `per-frame`, `per-animation`, `union` or `in-place`; empty: nothing moves, or (in older files)
+    /// per frame.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub moving_bounds: String,
 }
 
 /// One method's row.
@@ -163,6 +167,12 @@ pub struct Method {
     /// Boxes rasterised to test what is in them.
     #[serde(default)]
     pub boxes_mean: f64,
+    /// Bounds of moving objects brought to the device.
+    #[serde(default)]
+    pub bounds_brought_mean: f64,
+    /// Nodes of a hierarchy fitted to bounds that had changed.
+    #[serde(default)]
+    pub refits_mean: f64,
     /// Nodes that rays looked at.
     #[serde(default)]
     pub node_visits_mean: f64,

@@ -71,7 +71,13 @@ pub(crate) fn results() -> Results {
             depth_format: "D32_SFLOAT (reversed)".into(),
             details: BTreeMap::new(),
         },
-        scene: Scene { name: "city".into(), objects: 94_000, triangles: 18_800_000, hash: "0f".into() },
+        scene: Scene {
+            name: "city".into(),
+            objects: 94_000,
+            triangles: 18_800_000,
+            hash: "0f".into(),
+            ..Scene::default()
+        },
         path: "walk".into(),
         speed: 4.0,
         seed: 7,

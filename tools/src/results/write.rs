@@ -121,6 +121,9 @@ const SCALARS: &[(&str, Cell)] = &[
     ("plane_tests_mean", |_, m| measured(m, m.plane_tests_mean)),
     ("rays_mean", |_, m| measured(m, m.rays_mean)),
     ("boxes_mean", |_, m| measured(m, m.boxes_mean)),
+    ("moving_bounds", |r, _| r.scene.moving_bounds.clone()),
+    ("bounds_brought_mean", |_, m| measured(m, m.bounds_brought_mean)),
+    ("refits_mean", |_, m| measured(m, m.refits_mean)),
     ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),
     ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
 ];

@@ -67,6 +67,7 @@ struct Records {
     draws: Vec<u64>,
     overdraw: Vec<f64>,
     work: Vec<Work>,
+    bounds_brought: Vec<u64>,
 }
 
 /// Runs the benchmark.
@@ -233,6 +234,7 @@ impl Records {
         self.draws.push(measured.drawn.draws);
         self.overdraw.push(measured.overdraw);
         self.work.push(measured.work);
+        self.bounds_brought.push(measured.bounds_brought);
         self.errors.push(measured.error);
         measured.images
     }
@@ -259,6 +261,8 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         plane_tests_mean: mean(&records.counted(|work| work.plane_tests)),
         rays_mean: mean(&records.counted(|work| work.rays)),
         boxes_mean: mean(&records.counted(|work| work.boxes)),
+        bounds_brought_mean: mean(&records.bounds_brought),
+        refits_mean: mean(&records.counted(|work| work.refits)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),
         device_memory_mib: shared_mib + contender.memory_mib,
         choices: contender.method.choices(),
@@ -337,6 +341,7 @@ pub fn header(session: &Session, command: &str) -> Results {
             objects: session.world.total() as u64,
             triangles: session.world.triangles(),
             hash: session.scene_hash(),
+            moving_bounds: session.moving_bounds().map_or_else(String::new, |mode| mode.name().to_owned()),
         },
         path: session.path().describe(),
         speed: given.speed,

@@ -54,6 +54,8 @@ pub struct Measured {
     pub counts: Vec<u32>,
     /// Queries, boxes and rays.
     pub work: Work,
+    /// Bounds of moving objects that the frame brought to the device.
+    pub bounds_brought: u64,
     /// The pictures.
     pub images: FrameImages,
 }
@@ -135,7 +137,8 @@ impl Contender {
         let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
         let overdraw = if covered == 0.0 { 0.0 } else { fragments as f64 / covered };
         let counts = session.targets.spread(counts);
-        Ok(Measured { error, drawn, overdraw, counts, work, images })
+        let bounds_brought = session.world.bounds_brought();
+        Ok(Measured { error, drawn, overdraw, counts, work, bounds_brought, images })
     }
 
     /// Runs one frame through a view.

@@ -4,7 +4,7 @@ use crate::run::targets::Targets;
 use anyhow::{bail, Context, Result};
 use culling::{Shading, View, World};
 use engine::{Gpu, GpuOptions};
-use scenes::{CameraPath, Scene, SceneOptions, Shot};
+use scenes::{CameraPath, MovingBounds, Scene, SceneOptions, Shot};
 use std::path::{Path, PathBuf};
 
 /// What a session is opened with.
@@ -32,6 +32,8 @@ pub struct SessionOptions {
     pub shading: Option<Shading>,
     /// Samples a pixel, 1 or 4.
     pub samples: u32,
+    /// How the bounds of what moves are had.
+    pub bounds: MovingBounds,
 }
 
 impl Default for SessionOptions {
@@ -48,6 +50,7 @@ impl Default for SessionOptions {
             size: [1280, 720],
             shading: None,
             samples: 1,
+            bounds: MovingBounds::default(),
         }
     }
 }
@@ -91,7 +94,8 @@ impl Session {
         let path = if options.whole_path { path.whole() } else { path };
         let targets = Targets::with_samples(gpu, options.size, options.samples)?;
         let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
-        let world = World::shaded(gpu, &scene, shading).with_context(|| format!("scene '{}'", scene.name))?;
+        let world = World::with_bounds(gpu, &scene, shading, options.bounds)
+            .with_context(|| format!("scene '{}'", scene.name))?;
         Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })
     }
 
@@ -134,6 +138,11 @@ impl Session {
     /// SHA-256 of the scene as loaded, in hexadecimal.
     pub fn scene_hash(&self) -> String {
         self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// How the bounds of what moves are had; none if nothing moves.
+    pub fn moving_bounds(&self) -> Option<MovingBounds> {
+        (!self.scene.motion.dynamic_objects().is_empty()).then_some(self.options.bounds)
     }
 
     /// What is drawn of materials.

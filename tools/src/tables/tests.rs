@@ -233,7 +233,7 @@ fn run(scene: &str, objects: u64, methods: &[(&str, f64)]) -> Ran {
         sightline_version: String::new(),
         command: String::new(),
         device: Device { name: "llvmpipe".into(), kind: "cpu".into(), driver: "Mesa".into(), ..Device::default() },
-        scene: Scene { name: scene.into(), objects, triangles: 1, hash: String::new() },
+        scene: Scene { name: scene.into(), objects, triangles: 1, ..Scene::default() },
         path: "closing-in speed=1.0 whole".into(),
         speed: 1.0,
         seed: 1,

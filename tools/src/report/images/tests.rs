@@ -36,6 +36,7 @@ fn look(gallery: &mut Gallery, label: &str, frame_number: usize, holes: usize) {
     let truth = Truth::new(frame(0), 1).unwrap();
     let images = frame(holes);
     let measured = Measured {
+        bounds_brought: 0,
         error: compare(&truth, &images, &[true]).unwrap(),
         drawn: Drawn { objects: vec![true], ..Drawn::default() },
         overdraw: 1.0,
