@@ -144,6 +144,35 @@ fn a_list_that_serves_again_is_made_of_owners_every_few_frames() {
     assert!(steps[5][0] > ahead && steps[5][1] < again, "{steps:?}");
 }
 
+/// What a frame drew needs no box in the next ones, until owners are looked at: it is drawn again though its box no longer shows, if the
+/// pyramid lets it through. Without such a frame before it, the box decides.
+#[test]
+fn what_is_known_to_show_needs_no_box() {
+    let gpu = gpu();
+    let case = worlds::walled(400);
+    let at = |height: f64| scenes::Shot {
+        pose: scenes::Pose::looking_at(glam::DVec3::new(0.7, height, 7.0), glam::DVec3::ZERO),
+        ..case.shots[0]
+    };
+    let drawn = |heights: [f64; 4]| {
+        let case = case.filmed(heights.map(at).to_vec());
+        let mut lab = harness::Lab::new(&gpu, &case);
+        let subject = setting(&[("ranges", "1"), ("rays", "off"), ("small", "0"), ("finest", "3"), ("texels", "2")]);
+        let mut method = lab.make(&subject, &Default::default());
+        let [.., before, last] = &lab.film(&mut *method, &case.shots)[..] else { panic!("four frames") };
+        [before.drawn.objects.clone(), last.drawn.objects.clone()]
+    };
+    // The list of step 0 is that of the first height; the last picture is the same.
+    let [met, known] = drawn([3.0, 3.001, 3.8, 3.6]);
+    let [_, unknown] = drawn([3.0, 3.001, 3.001, 3.6]);
+    let only = |one: &[bool], other: &[bool]| -> Vec<usize> {
+        (0..one.len()).filter(|object| one[*object] && !other[*object]).collect()
+    };
+    assert_eq!(only(&unknown, &known), [0usize; 0], "what shows is drawn, known or not");
+    let boxless = only(&known, &unknown);
+    assert!(!boxless.is_empty() && boxless.iter().all(|object| met[*object]), "{boxless:?} have been drawn before");
+}
+
 /// Where cut follows cut, what a frame finds out of owners would be forgotten unread.
 #[test]
 fn owners_are_looked_at_where_a_next_frame_reads_of_them() {

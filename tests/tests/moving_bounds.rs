@@ -7,6 +7,7 @@ use harness::sessions::faults;
 use harness::{assert_caught, assert_none, gpu};
 use scenes::{export_glb, import_bytes, MovingBounds, Scene, SceneOptions};
 use sightline::run::session::{Session, SessionOptions};
+use sightline::run::truth::RunTruth;
 use std::path::Path;
 
 const LOOSER: [MovingBounds; 3] = [MovingBounds::PerAnimation, MovingBounds::Union, MovingBounds::InPlace];
@@ -75,6 +76,27 @@ fn bounds_that_stay_behind_are_caught() {
     assert_caught(&caught, "false negatives");
 }
 
+/// Where things are does not depend on how their bounds are had: the truth itself would move with transforms that were not brought.
+#[test]
+fn every_way_shows_the_same_pictures() {
+    let gpu = gpu();
+    for (scene, path) in
+        [(scene("moving-boxes", 0.5), "rotate"), (scene("moving-balloons", 0.01), "walk"), (file(), "rotate")]
+    {
+        let pictures = |mode| {
+            let mut session = session(&gpu, scene.clone(), path, mode);
+            let truth = RunTruth::draw(&mut session, || ()).unwrap();
+            let frames = 0..session.frames();
+            frames.map(|frame| truth.frame(&mut session, frame).unwrap().images().clone()).collect::<Vec<_>>()
+        };
+        let expected = pictures(MovingBounds::PerFrame);
+        assert!(expected[0] != expected[expected.len() - 1], "nothing changes, so this proves nothing");
+        for mode in LOOSER {
+            assert!(pictures(mode) == expected, "{}, {mode:?}", scene.name);
+        }
+    }
+}
+
 /// The device has the host's bounds after each frame, however many times have passed between frames.
 #[test]
 fn the_device_has_the_bounds_of_the_host() {
@@ -117,6 +139,8 @@ fn a_union_is_never_touched_and_the_rest_is_as_little_as_changes() {
             tree.follow(&world).unwrap();
             sum = (sum.0 + world.bounds_brought(), sum.1 + tree.refitted());
         }
+        tree.follow(&world).unwrap();
+        assert_eq!(tree.refitted(), 0, "{mode:?}: nothing has changed since");
         brought.push((mode, sum));
     }
     let of = |wanted| brought.iter().find(|(mode, _)| *mode == wanted).map(|(_, sum)| *sum).unwrap();

@@ -75,13 +75,13 @@ impl Seeds {
             true => Rays::Host(Box::new(HostRays::new(gpu, world, nodes, shapes)?)),
             false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes)?)),
         };
-        Ok(Some(Seeds { bvh, origin, usual_size: usual_size(world), revision: world.revision(), rays }))
+        Ok(Some(Seeds { bvh, origin, usual_size: usual_size(world), revision: world.bounds_revision(), rays }))
     }
 
     /// Marks in `seen`, by object, what rays meet first.
     pub fn cast(&mut self, f: &mut Frame, world: &World, view: &View, seen: BufferRef<u32>) -> Result<()> {
-        if self.revision != world.revision() {
-            self.revision = world.revision();
+        if self.revision != world.bounds_revision() {
+            self.revision = world.bounds_revision();
             self.follow(world)?;
         }
         let view = view_of(view, self.origin, self.usual_size);

@@ -61,11 +61,12 @@ pub(super) struct Spread {
 impl AnimatedNode {
     /// Where it can be while a span passes.
     pub(super) fn spread(&self, span: Span) -> Spread {
-        let Local::Parts { translation, rotation, scale } = self.local else {
-            let Local::Matrix(matrix) = self.local else { unreachable!("a node has parts or a matrix") };
-            let shift = matrix.translation.length();
-            let scale = stretch(&matrix.matrix3);
-            return Spread { scale, scale_off: 0.0, turn: 1.0, turn_off: 0.0, shift, shift_off: 0.0 };
+        let (translation, rotation, scale) = match self.local {
+            Local::Parts { translation, rotation, scale } => (translation, rotation, scale),
+            Local::Matrix(matrix) => {
+                let (shift, scale) = (matrix.translation.length(), stretch(&matrix.matrix3));
+                return Spread { scale, scale_off: 0.0, turn: 1.0, turn_off: 0.0, shift, shift_off: 0.0 };
+            }
         };
         let (shift, shift_off) = vectors(self.translation.as_ref(), translation, span);
         let (scales, scale_off) = vectors(self.scale.as_ref(), scale, span);
