@@ -44,7 +44,11 @@ pub struct Seeds {
     /// What positions in the hierarchy's nodes are relative to.
     origin: DVec3,
     usual_size: f32,
+    /// Bounds it was begun from, and those it was fitted to last.
+    begun_at: u64,
     revision: u64,
+    /// No ray was cast yet, or the past is forgotten: nothing may tell of where objects were before.
+    is_new: bool,
     rays: Rays,
 }
 
@@ -66,8 +70,7 @@ impl Seeds {
             _ => gpu.info().is_none_or(|info| info.kind == DeviceKind::Cpu),
         };
         let bvh = build(world)?;
-        let Some(root) = bvh.nodes().first() else { return Ok(None) };
-        let origin = root.bounds.centre();
+        let Some(origin) = origin_of(&bvh) else { return Ok(None) };
         let nodes = flatten(&bvh, origin);
         let (meshes, indices, vertices) = world.read_meshes()?;
         let shapes = Shapes::of(meshes, &vertices, indices);
@@ -75,15 +78,19 @@ impl Seeds {
             true => Rays::Host(Box::new(HostRays::new(gpu, world, nodes, shapes)?)),
             false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes)?)),
         };
-        Ok(Some(Seeds { bvh, origin, usual_size: usual_size(world), revision: world.bounds_revision(), rays }))
+        let (usual_size, revision) = (usual_size(world), world.bounds_revision());
+        Ok(Some(Seeds { bvh, origin, usual_size, begun_at: revision, revision, is_new: true, rays }))
     }
 
     /// Marks in `seen`, by object, what rays meet first.
     pub fn cast(&mut self, f: &mut Frame, world: &World, view: &View, seen: BufferRef<u32>) -> Result<()> {
-        if self.revision != world.bounds_revision() {
-            self.revision = world.bounds_revision();
+        let revision = world.bounds_revision();
+        if self.is_new && self.begun_at != revision {
+            self.begin(world)?;
+        } else if self.revision != revision {
             self.follow(world)?;
         }
+        (self.is_new, self.revision) = (false, revision);
         let view = view_of(view, self.origin, self.usual_size);
         match &mut self.rays {
             Rays::Host(rays) => rays.cast(f, world, &view, seen),
@@ -100,15 +107,38 @@ impl Seeds {
         f.skip(stage.name, reason);
     }
 
+    /// Nothing of frames before tells on those that come.
+    pub fn forget(&mut self) {
+        self.is_new = true;
+    }
+
+    /// Objects have moved since the hierarchy was made, and no ray was cast: as if it were made now.
+    fn begin(&mut self, world: &World) -> Result<()> {
+        self.build_anew(world)?;
+        self.origin = origin_of(&self.bvh).unwrap_or(self.origin);
+        self.usual_size = usual_size(world);
+        self.begun_at = world.bounds_revision();
+        self.hand_over()
+    }
+
     /// Objects have moved: boxes follow, and the hierarchy is built anew once it has become too costly to go down.
     fn follow(&mut self, world: &World) -> Result<()> {
         if self.bvh.refit(world.host_bounds()).is_err() || self.bvh.needs_rebuild(REBUILD_FACTOR) {
-            let bvh = build(world)?;
-            // The same objects have bounds as before, or the tree would not fit its buffers.
-            if bvh.nodes().len() == self.bvh.nodes().len() {
-                self.bvh = bvh;
-            }
+            self.build_anew(world)?;
         }
+        self.hand_over()
+    }
+
+    /// The same objects have bounds as before, or the tree would not fit its buffers and stays.
+    fn build_anew(&mut self, world: &World) -> Result<()> {
+        let bvh = build(world)?;
+        if bvh.nodes().len() == self.bvh.nodes().len() {
+            self.bvh = bvh;
+        }
+        Ok(())
+    }
+
+    fn hand_over(&mut self) -> Result<()> {
         let nodes = flatten(&self.bvh, self.origin);
         match &mut self.rays {
             Rays::Host(rays) => rays.follow(nodes),
@@ -116,6 +146,10 @@ impl Seeds {
         }
         Ok(())
     }
+}
+
+fn origin_of(bvh: &Bvh) -> Option<DVec3> {
+    Some(bvh.nodes().first()?.bounds.centre())
 }
 
 /// A frame's view as rays take it; `origin`: what positions in the tree are relative to.

@@ -57,6 +57,10 @@ impl Default for Covered {
 /// A pixel that is nearer than its object's footprint says.
 #[derive(Clone, Debug)]
 pub struct TooNear {
+    /// Its column and row.
+    pub at: [u32; 2],
+    /// True if only a primitive lower than [`LEAST_HEIGHT_PX`] can have made it: outside the raster conditions.
+    pub thin: bool,
     /// Height of its lowest triangle, or length of its shortest line, in pixels.
     pub height_px: f64,
     /// How much nearer than the box, in depth ranges of the box times the vertex grid.
@@ -103,6 +107,8 @@ struct Print {
     range: f32,
     low: DVec2,
     high: DVec2,
+    primitives: Vec<Primitive>,
+    /// Of the lowest primitive.
     height_px: f64,
     /// What the rectangle is grown by, pixels.
     grow_px: f64,
@@ -125,12 +131,10 @@ impl Print {
         // The slack is linear in the grid, unless it was cut off at the near plane: a coarse grid tells the range.
         let coarser = footprint_of(&clip, &CullView { snap_px: 1e-3, ..cull }, bare_flags);
         let range = (coarser.nearest - unsnapped.nearest) / (DEPTH_SLACK_PER_PIXEL * 1e-3);
-        let corners = projected(view, scene, object);
-        let low = corners.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-        let high = corners.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let Mesh { indices, topology, .. } = &scene.meshes[object.mesh as usize];
-        let vertices = [3, 2, 1][*topology as usize];
-        let height_px = indices.chunks(vertices).map(|face| height(face, &corners)).fold(f64::INFINITY, f64::min);
+        let primitives = primitives(view, scene, object);
+        let low = primitives.iter().map(|primitive| primitive.low).fold(DVec2::INFINITY, DVec2::min);
+        let high = primitives.iter().map(|primitive| primitive.high).fold(DVec2::NEG_INFINITY, DVec2::max);
+        let height_px = primitives.iter().map(|primitive| primitive.height_px).fold(f64::INFINITY, f64::min);
         let wide = bound.flags & OBJECT_WIDE_RASTER != 0;
         let grow_px = f64::from(cull.snap_px) + if wide { 1.0 } else { 0.0 };
         Print {
@@ -140,32 +144,82 @@ impl Print {
             range,
             low,
             high,
+            primitives,
             height_px,
             grow_px,
         }
     }
 }
 
-/// An object's vertices in pixels, in f64.
-fn projected(view: &View, scene: &Scene, object: &Object) -> Vec<DVec2> {
-    let size = DVec2::new(f64::from(view.size[0]), f64::from(view.size[1]));
+/// Can only a primitive outside the raster conditions have made this pixel so near? One of them reaches it, and none of the others
+/// that do is as near there, by the bound that they keep.
+fn is_thin(primitives: &[Primitive], grow_px: f64, centre: DVec2, depth: f32) -> bool {
+    let reach = primitives.iter().filter(|primitive| primitive.reaches(centre, grow_px));
+    let (thin, lawful): (Vec<&Primitive>, Vec<_>) = reach.partition(|primitive| primitive.height_px < LEAST_HEIGHT_PX);
+    !thin.is_empty() && lawful.iter().all(|primitive| primitive.nearest_drawn(grow_px) < f64::from(depth))
+}
+
+/// A triangle, line or point on the screen, in f64.
+struct Primitive {
+    /// The shortest height of a triangle, the length of a line; of a point, 0.
+    height_px: f64,
+    low: DVec2,
+    high: DVec2,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Primitive {
+    /// `corners`: pixels, and depth.
+    fn new(corners: &[DVec3]) -> Self {
+        let nearest = corners.iter().map(|corner| corner.z).fold(f64::NEG_INFINITY, f64::max);
+        let farthest = corners.iter().map(|corner| corner.z).fold(f64::INFINITY, f64::min);
+        let places: Vec<DVec2> = corners.iter().map(|corner| corner.truncate()).collect();
+        Primitive {
+            height_px: height(&places),
+            low: places.iter().copied().fold(DVec2::INFINITY, DVec2::min),
+            high: places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
+            nearest,
+            farthest,
+        }
+    }
+
+    fn reaches(&self, centre: DVec2, grow_px: f64) -> bool {
+        centre.cmpge(self.low - grow_px).all() && centre.cmple(self.high + grow_px).all()
+    }
+
+    /// No pixel of a primitive within the raster conditions is nearer (`include/footprint.glsl`).
+    fn nearest_drawn(&self, grid_px: f64) -> f64 {
+        self.nearest + (self.nearest - self.farthest) * f64::from(DEPTH_SLACK_PER_PIXEL) * grid_px
+    }
+}
+
+/// What an object draws.
+fn primitives(view: &View, scene: &Scene, object: &Object) -> Vec<Primitive> {
+    let size = DVec3::new(f64::from(view.size[0]), f64::from(view.size[1]), 1.0);
     let vertex = |position: &glam::Vec3| {
         let relative: DVec3 = object.world_from_object.transform_point3(position.as_dvec3()) - view.pose.position;
         let clip = view.clip_from_relative() * relative.extend(1.0);
-        (DVec2::new(clip.x, clip.y) / clip.w * 0.5 + 0.5) * size
+        let projected = clip.truncate() / clip.w;
+        (projected.truncate() * 0.5 + 0.5).extend(projected.z) * size
     };
-    scene.meshes[object.mesh as usize].positions.iter().map(vertex).collect()
+    let Mesh { positions, indices, topology, .. } = &scene.meshes[object.mesh as usize];
+    let corners: Vec<DVec3> = positions.iter().map(vertex).collect();
+    let faces = indices.chunks([3, 2, 1][*topology as usize]);
+    faces
+        .map(|face| Primitive::new(&face.iter().map(|index| corners[*index as usize]).collect::<Vec<DVec3>>()))
+        .collect()
 }
 
 /// The shortest height of a triangle, the length of a line; of a point, 0.
-fn height(face: &[u32], corners: &[DVec2]) -> f64 {
-    let [a, b, c] = match face {
-        [a, b, c] => [a, b, c].map(|index| corners[*index as usize]),
-        [a, b] => return (corners[*a as usize] - corners[*b as usize]).length(),
+fn height(corners: &[DVec2]) -> f64 {
+    let [a, b, c] = match corners {
+        [a, b, c] => [a, b, c],
+        [a, b] => return (*a - *b).length(),
         _ => return 0.0,
     };
-    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-    (b - a).perp_dot(c - a).abs() / longest.max(f64::MIN_POSITIVE)
+    let longest = (*b - *a).length().max((*c - *b).length()).max((*a - *c).length());
+    (*b - *a).perp_dot(*c - *a).abs() / longest.max(f64::MIN_POSITIVE)
 }
 
 impl Covered {
@@ -198,7 +252,8 @@ impl Covered {
                 "{}: depth {depth:e} at {at:?} is nearer than {:e}; primitive {:.4} px high, slack {slack:.2}",
                 print.name, promised.nearest, print.height_px
             );
-            self.too_near.push(TooNear { height_px: print.height_px, slack, text });
+            let thin = is_thin(&print.primitives, print.grow_px, centre, depth);
+            self.too_near.push(TooNear { at, thin, height_px: print.height_px, slack, text });
         }
     }
 
@@ -215,5 +270,45 @@ impl Covered {
         for (mine, theirs) in self.worst_slack.iter_mut().zip(other.worst_slack) {
             *mine = mine.max(theirs);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID_PX: f64 = 1.0 / 256.0;
+
+    fn triangle(corners: [[f64; 3]; 3]) -> Primitive {
+        Primitive::new(&corners.map(DVec3::from))
+    }
+
+    /// On edge at x = 10.5, from depth 0.1 to 0.2.
+    fn on_edge() -> Primitive {
+        triangle([[10.5, 4.0, 0.1], [10.501, 9.0, 0.2], [10.5, 12.0, 0.15]])
+    }
+
+    fn upright() -> Primitive {
+        triangle([[8.0, 4.0, 0.1], [14.0, 4.0, 0.2], [8.0, 12.0, 0.15]])
+    }
+
+    #[test]
+    fn only_a_low_primitive_that_reaches_the_pixel_excuses_it() {
+        let at = DVec2::new(10.5, 8.5);
+        assert!(is_thin(&[on_edge()], GRID_PX, at, 0.5));
+        assert!(is_thin(&[upright(), on_edge()], GRID_PX, at, 0.5), "the other is not as near");
+        assert!(!is_thin(&[upright()], GRID_PX, at, 0.5), "nothing low is there: a bound is broken");
+        assert!(!is_thin(&[on_edge()], GRID_PX, at + DVec2::X, 0.5), "it does not reach so far");
+        assert!(!is_thin(&[upright(), on_edge()], GRID_PX, at, 0.2), "the other may have made it");
+        assert!(!is_thin(&[], GRID_PX, at, 0.5));
+    }
+
+    #[test]
+    fn what_a_lawful_primitive_may_draw_beyond_its_corners_is_its_own() {
+        let at = DVec2::new(10.5, 8.5);
+        let slack = 0.1 * f64::from(DEPTH_SLACK_PER_PIXEL) * GRID_PX;
+        let primitives = [upright(), on_edge()];
+        assert!(!is_thin(&primitives, GRID_PX, at, (0.2 + 0.9 * slack) as f32));
+        assert!(is_thin(&primitives, GRID_PX, at, (0.2 + 1.1 * slack) as f32));
     }
 }

@@ -1,8 +1,9 @@
 //! Runs methods through drills, and says what they lost.
 
 use super::catalogue::{Drill, DrillId, CHANCE, FAMILIES};
-use super::footprints::{covered, Covered, LEAST_HEIGHT_PX};
-use super::lab::{error_of, Lab, Take};
+use super::conditions::judged;
+use super::footprints::{covered, Covered};
+use super::lab::{Lab, Take};
 use super::{settings, Random, Subject};
 use crate::measures::metrics::{FrameError, FrameImages, Truth};
 use anyhow::Result;
@@ -39,6 +40,8 @@ pub struct Tally {
     pub differing: u64,
     /// Pixels of equal depth that show another object.
     pub ties: u64,
+    /// Pixels outside the raster conditions that explain what was lost or differs there: counted here alone.
+    pub thin: u64,
 }
 
 /// A family's line.
@@ -165,6 +168,8 @@ fn fit(lab: &mut Lab, size: [u32; 2]) -> Result<()> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Played {
     pub(super) error: FrameError,
+    /// Pixels outside the raster conditions, which the error leaves out.
+    thin: u64,
     /// Of its pictures.
     pictures: u64,
     /// Of its draw lists.
@@ -184,7 +189,7 @@ fn pixels(images: &FrameImages) -> impl Iterator<Item = (&[u8; 4], &u32)> {
 
 /// `subject`: `auto` may change its method while nothing moves, and each method decides by an order of its own which of two objects that are as
 /// near has a pixel. A pixel that is another's than in the truth stands for the truth's then: the truth is compared with anyway.
-fn played(subject: &Subject, truth: &Truth, take: &Take) -> Result<Played> {
+fn played(subject: &Subject, truth: &Truth, take: &Take, (error, thin): (FrameError, u64)) -> Played {
     let (images, one_order) = (&take.images, subject.options.method() != "auto");
     let pictures = hash_of(|hasher| {
         images.depth.iter().for_each(|depth| depth.to_bits().hash(hasher));
@@ -194,7 +199,7 @@ fn played(subject: &Subject, truth: &Truth, take: &Take) -> Result<Played> {
         }
     });
     let lists = hash_of(|hasher| bytemuck::cast_slice::<_, u32>(&take.commands).hash(hasher));
-    Ok(Played { error: error_of(truth, take)?, pictures, lists })
+    Played { error, thin, pictures, lists }
 }
 
 /// What a method does in each frame of a drill.
@@ -213,7 +218,8 @@ pub(super) fn play(
             method.forget()?;
         }
         let take = lab.take(&mut *method, shot, frame)?;
-        frames.push(played(subject, &truths[frame], &take)?);
+        let verdict = judged(lab, shot, &truths[frame], &take)?;
+        frames.push(played(subject, &truths[frame], &take, verdict));
     }
     Ok(frames)
 }
@@ -226,6 +232,7 @@ fn tally_of(frames: &[Played]) -> Tally {
         lost: sum(|error| error.false_negatives),
         differing: sum(|error| error.differing_pixels + error.wrong_colour_pixels),
         ties: sum(|error| error.tied_pixels),
+        thin: frames.iter().map(|frame| frame.thin).sum(),
     }
 }
 
@@ -236,6 +243,7 @@ impl Tally {
         self.lost += other.lost;
         self.differing += other.differing;
         self.ties += other.ties;
+        self.thin += other.thin;
     }
 }
 
@@ -282,7 +290,7 @@ fn measure(
         let seen = covered(lab, &shots[frame], |_, _| ())?;
         let name = &drill.case.name;
         broken.extend(seen.outside.iter().map(|text| format!("{name}, frame {frame}: {text}")));
-        let promised = seen.too_near.iter().filter(|near| near.height_px >= LEAST_HEIGHT_PX);
+        let promised = seen.too_near.iter().filter(|near| !near.thin);
         broken.extend(promised.map(|near| format!("{name}, frame {frame}: {}", near.text)));
         row.margin.join(seen);
         let mut pixels = std::collections::HashMap::<u32, u64>::new();

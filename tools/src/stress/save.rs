@@ -1,7 +1,8 @@
 //! Keeps a failure: its scene, its camera, and pictures of what is wrong.
 
 use super::catalogue::Drill;
-use super::lab::{error_of, Lab};
+use super::conditions::judged;
+use super::lab::Lab;
 use super::run::{truths, wrong};
 use super::Subject;
 use crate::measures::metrics::{FrameImages, Truth};
@@ -80,7 +81,7 @@ fn first_wrong_frame(gpu: &Gpu, subject: &Subject, drill: &Drill) -> Result<Opti
             method.forget()?;
         }
         let take = lab.take(&mut *method, shot, frame)?;
-        if wrong(&error_of(&truths[frame], &take)?).is_some() {
+        if wrong(&judged(&mut lab, shot, &truths[frame], &take)?.0).is_some() {
             return Ok(Some((frame, truths[frame].images().clone(), take.images)));
         }
     }

@@ -215,6 +215,9 @@ impl Method for Iterative {
         self.afresh = true;
         self.was_afresh = false;
         self.until_filtering = 0;
+        if let Some(seeds) = &mut self.seeds {
+            seeds.forget();
+        }
         Ok(self.seen.write(&vec![0; self.seen.len()])?)
     }
 }

@@ -113,15 +113,25 @@ fn told(arguments: &StressArgs, gpu: &Gpu, plan: &Plan, failure: &Failure, index
 
 fn table(plan: &Plan, outcome: &Outcome) -> String {
     let mut text = format!(
-        "{:<17} {:<36} {:>5} {:>13} {:>5} {:>9} {:>9} {:>9} {:>12} {:>9}\n",
-        "family", "rule", "runs", "object-frames", "lost", "differing", "ties", "spare px", "spare depths", "fewest px"
+        "{:<17} {:<36} {:>5} {:>13} {:>5} {:>9} {:>9} {:>5} {:>9} {:>12} {:>9}\n",
+        "family",
+        "rule",
+        "runs",
+        "object-frames",
+        "lost",
+        "differing",
+        "ties",
+        "thin",
+        "spare px",
+        "spare depths",
+        "fewest px"
     );
     for (family, row) in FAMILIES.iter().zip(&outcome.families).filter(|(_, row)| row.tally.runs > 0) {
         let spare_px = row.margin.spare_px;
         let spare_px = if spare_px.is_finite() { format!("{spare_px:.5}") } else { "-".into() };
         let or_none = |value: Option<String>| value.unwrap_or_else(|| "-".into());
         text += &format!(
-            "{:<17} {:<36} {:>5} {:>13} {:>5} {:>9} {:>9} {:>9} {:>12} {:>9}\n",
+            "{:<17} {:<36} {:>5} {:>13} {:>5} {:>9} {:>9} {:>5} {:>9} {:>12} {:>9}\n",
             family.name,
             family.rule,
             row.tally.runs,
@@ -129,24 +139,26 @@ fn table(plan: &Plan, outcome: &Outcome) -> String {
             row.tally.lost,
             row.tally.differing,
             row.tally.ties,
+            row.tally.thin,
             spare_px,
             or_none(row.margin.spare_depths.map(|spare| spare.to_string())),
             or_none(row.fewest_pixels.map(|pixels| pixels.to_string())),
         );
     }
     text += &format!(
-        "\n{:<54} {:>5} {:>13} {:>5} {:>9} {:>9}\n",
-        "method", "runs", "object-frames", "lost", "differing", "ties"
+        "\n{:<54} {:>5} {:>13} {:>5} {:>9} {:>9} {:>5}\n",
+        "method", "runs", "object-frames", "lost", "differing", "ties", "thin"
     );
     for (subject, tally) in plan.subjects.iter().zip(&outcome.methods) {
         text += &format!(
-            "{:<54} {:>5} {:>13} {:>5} {:>9} {:>9}\n",
+            "{:<54} {:>5} {:>13} {:>5} {:>9} {:>9} {:>5}\n",
             subject.options.label(),
             tally.runs,
             tally.object_frames,
             tally.lost,
             tally.differing,
-            tally.ties
+            tally.ties,
+            tally.thin
         );
     }
     text
@@ -156,7 +168,7 @@ fn as_json(plan: &Plan, outcome: &Outcome) -> serde_json::Value {
     let families = FAMILIES.iter().zip(&outcome.families).filter(|(_, row)| row.tally.runs > 0).map(|(family, row)| {
         json!({
             "family": family.name, "rule": family.rule, "runs": row.tally.runs, "object_frames": row.tally.object_frames,
-            "lost": row.tally.lost, "differing_pixels": row.tally.differing, "tied_pixels": row.tally.ties,
+            "lost": row.tally.lost, "differing_pixels": row.tally.differing, "tied_pixels": row.tally.ties, "thin_pixels": row.tally.thin,
             "spare_px": row.margin.spare_px.is_finite().then_some(row.margin.spare_px),
             "spare_depths": row.margin.spare_depths, "fewest_pixels": row.fewest_pixels,
         })
@@ -164,7 +176,7 @@ fn as_json(plan: &Plan, outcome: &Outcome) -> serde_json::Value {
     let methods = plan.subjects.iter().zip(&outcome.methods).map(|(subject, tally)| {
         json!({
             "label": subject.options.label(), "runs": tally.runs, "object_frames": tally.object_frames, "lost": tally.lost,
-            "differing_pixels": tally.differing, "tied_pixels": tally.ties,
+            "differing_pixels": tally.differing, "tied_pixels": tally.ties, "thin_pixels": tally.thin,
         })
     });
     let failures = outcome.failures.iter().map(|failure| {
