@@ -49,6 +49,7 @@ pub struct Seeds {
     revision: u64,
     /// No ray was cast yet, or the past is forgotten: nothing may tell of where objects were before.
     is_new: bool,
+    refitted: u64,
     rays: Rays,
 }
 
@@ -79,12 +80,13 @@ impl Seeds {
             false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes)?)),
         };
         let (usual_size, revision) = (usual_size(world), world.bounds_revision());
-        Ok(Some(Seeds { bvh, origin, usual_size, begun_at: revision, revision, is_new: true, rays }))
+        Ok(Some(Seeds { bvh, origin, usual_size, begun_at: revision, revision, is_new: true, refitted: 0, rays }))
     }
 
     /// Marks in `seen`, by object, what rays meet first.
     pub fn cast(&mut self, f: &mut Frame, world: &World, view: &View, seen: BufferRef<u32>) -> Result<()> {
         let revision = world.bounds_revision();
+        self.refitted = 0;
         if self.is_new && self.begun_at != revision {
             self.begin(world)?;
         } else if self.revision != revision {
@@ -98,8 +100,14 @@ impl Seeds {
         }
     }
 
+    /// Nodes that were fitted to bounds that had changed, in the last frame.
+    pub fn refitted(&self) -> u64 {
+        self.refitted
+    }
+
     /// Notes that rays need not be cast.
-    pub fn skip(&self, f: &mut Frame, reason: &'static str) {
+    pub fn skip(&mut self, f: &mut Frame, reason: &'static str) {
+        self.refitted = 0;
         let stage = match self.rays {
             Rays::Host(_) => seeds::MarkMet::INFO,
             Rays::Device(_) => seeds::CastRays::INFO,
@@ -139,6 +147,7 @@ impl Seeds {
     }
 
     fn hand_over(&mut self) -> Result<()> {
+        self.refitted = self.bvh.nodes().len() as u64;
         let nodes = flatten(&self.bvh, self.origin);
         match &mut self.rays {
             Rays::Host(rays) => rays.follow(nodes),

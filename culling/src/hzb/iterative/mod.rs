@@ -25,7 +25,7 @@ use crate::eovc::filter_occluders;
 use crate::roc::depth_plane;
 use crate::seeds::{Seeds, RAYS_OPTION};
 use crate::world::Still;
-use crate::{Error, Method, OptionInfo, Result, Setup, View, World};
+use crate::{Error, Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hurry::Hurry;
 use shaders::types::MOST_STEP_RANGES;
@@ -208,6 +208,18 @@ impl Method for Iterative {
         Ok(())
     }
 
+    fn work(&self) -> Result<Work> {
+        let boxes = self.steps.read_tested()?.len() as u64;
+        let refits = self.seeds.as_ref().map_or(0, Seeds::refitted);
+        Ok(Work { boxes, refits, ..Work::default() })
+    }
+
+    fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
+        let bounds = world.host_bounds();
+        let singles = self.steps.read_tested()?.into_iter().map(|object| bounds[object]).collect();
+        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
+    }
+
     fn forget(&mut self) -> Result<()> {
         self.still.forget();
         self.ahead_holds = false;
@@ -268,7 +280,8 @@ impl Iterative {
         ];
         stages.iter().for_each(|stage| f.skip(stage.name, Still::REASON));
         Pyramid::skip(f, Still::REASON);
-        if let Some(seeds) = &self.seeds {
+        self.steps.test_none();
+        if let Some(seeds) = &mut self.seeds {
             seeds.skip(f, Still::REASON);
         }
         let last_step = if self.ranges == 1 && self.first_step == 0 { 0 } else { self.ranges };

@@ -5,7 +5,7 @@ use crate::hzb::Pyramid;
 use crate::world::{LastToFirst, View, World};
 use crate::{Options, Result};
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Target};
-use shaders::types::{BlockSpan, DrawCommand, StepView, LISTED_GRID, LISTED_HEADER, MOST_STEP_RANGES};
+use shaders::types::{BlockSpan, DrawCommand, StepView, LISTED_GRID, LISTED_HEADER, MOST_STEP_RANGES, STEP_TESTED};
 use shaders::{hzb, BufferRef, ResourceId, Stage};
 
 /// Reductions of the largest picture: three levels each.
@@ -37,6 +37,7 @@ impl Step {
 
 /// Lists and what they are made with. A step's commands have room for every object, so that they cannot overflow.
 pub(super) struct Steps {
+    gpu: Gpu,
     view: Buffer<StepView>,
     spans: Buffer<BlockSpan>,
     /// Where the farthest block in view begins, and the nearest (its bits inverted).
@@ -44,7 +45,11 @@ pub(super) struct Steps {
     measured: bool,
     due: Buffer<u32>,
     blocks: Buffer<u32>,
-    shown: Buffer<u32>,
+    /// What a step makes of objects, by object of the blocks it lists: by step, but that the first two share theirs, as nothing lies behind the
+    /// first.
+    shown: Vec<Buffer<u32>>,
+    /// Steps of the last frame that tested boxes.
+    tested_in: Vec<u32>,
     counts: Buffer<u32>,
     starts: Buffer<u32>,
     commands: Vec<Buffer<DrawCommand>>,
@@ -61,6 +66,8 @@ pub(super) struct Steps {
     texels: u32,
     subgroup_size: u32,
     kinds: u32,
+    /// The first command of each kind.
+    firsts: Vec<u32>,
     world: ResourceId,
 }
 
@@ -72,13 +79,15 @@ impl Steps {
         let no_boxes: Vec<_> = world.ranges().iter().map(|range| BoxShape::no_boxes(range.first)).collect();
         let commands = |step| Buffer::new(gpu, &format!("hzb.commands{step}"), world.len(), Placement::Storage);
         Ok(Steps {
+            gpu: gpu.clone(),
             view: Buffer::new(gpu, "hzb.step_view", 1, Placement::Upload)?,
             spans: Buffer::new(gpu, "hzb.spans", blocks, Placement::Storage)?,
             reach: words("reach", 2)?,
             measured: false,
             due: words("due", blocks)?,
             blocks: words("due_blocks", LISTED_HEADER as usize + blocks)?,
-            shown: words("shown", world.len())?,
+            shown: Vec::new(),
+            tested_in: Vec::new(),
             counts: words("counts", kinds * blocks)?,
             starts: words("starts", kinds * blocks)?,
             commands: (0..most_steps).map(commands).collect::<std::result::Result<_, _>>()?,
@@ -95,6 +104,7 @@ impl Steps {
             texels: options.number("texels"),
             subgroup_size: gpu.subgroup_size(),
             kinds: kinds as u32,
+            firsts: world.ranges().iter().map(|range| range.first).collect(),
             world: world.id(),
         })
     }
@@ -128,6 +138,10 @@ impl Steps {
             share: self.share,
             later_kinds: std::array::from_fn(|later| first_of(later + 1)),
         };
+        while self.shown.len() < range_count as usize {
+            self.shown.push(Buffer::new(&self.gpu, "hzb.shown", world.len(), Placement::Storage)?);
+        }
+        self.tested_in.clear();
         self.shape.look(view)?;
         self.reductions[0].write(&pyramid.grids())?;
         Ok(self.view.write(&[all])?)
@@ -199,7 +213,7 @@ impl Steps {
             levels,
             pyramid: texels,
             blocks,
-            shown: self.shown.all(),
+            shown: self.shown_in(step.number),
             counts,
             known: step.drawn,
             step: number,
@@ -232,7 +246,7 @@ impl Steps {
         f.dispatch_groups(scan, 1);
         let write = hzb::WriteBlocks {
             blocks,
-            shown: self.shown.all(),
+            shown: self.shown_in(step.number),
             counts,
             starts,
             views,
@@ -247,16 +261,17 @@ impl Steps {
     }
 
     /// Rasterises the boxes of what a step found and the last frame did not see: whose show are drawn.
-    pub fn test_boxes(&self, f: &mut Frame, world: &World, step: &Step, target: &Target) {
+    pub fn test_boxes(&mut self, f: &mut Frame, world: &World, step: &Step, target: &Target) {
         if !self.tests_boxes || !step.behind {
             f.skip(hzb::TestBoxes::INFO.name, if self.tests_boxes { "nothing drawn before" } else { "turned off" });
             return;
         }
+        self.tested_in.push(step.number);
         let commands = self.commands[step.number as usize].all();
         let test = hzb::TestBoxes {
             bounds: world.bounds(),
             commands,
-            shown: self.shown.all(),
+            shown: self.shown_in(step.number),
             views: self.shape.view(),
             drawn: commands,
             visible: step.drawn,
@@ -264,6 +279,30 @@ impl Steps {
         if self.kinds > 0 {
             f.test_boxes(test, self.shape.draw(self.boxes.all(), self.kinds), &target.test_only());
         }
+    }
+
+    /// The objects whose boxes the last frame tested, step by step. The device must be idle.
+    pub fn read_tested(&self) -> Result<Vec<usize>> {
+        let mut tested = Vec::new();
+        for &step in &self.tested_in {
+            let (commands, totals) = (self.commands[step as usize].read()?, self.totals[step as usize].read()?);
+            let shown = self.shown[step.saturating_sub(1) as usize].read()?;
+            for (first, total) in self.firsts.iter().zip(totals) {
+                let listed = commands[*first as usize..][..total as usize].iter();
+                let objects = listed.map(|command| command.first_instance as usize);
+                tested.extend(objects.filter(|object| shown[*object] == STEP_TESTED));
+            }
+        }
+        Ok(tested)
+    }
+
+    /// Notes that a frame tests no boxes: nothing changed since the last one.
+    pub fn test_none(&mut self) {
+        self.tested_in.clear();
+    }
+
+    fn shown_in(&self, step: u32) -> BufferRef<u32> {
+        self.shown[step.saturating_sub(1) as usize].all()
     }
 
     /// Grids of reductions, empty if the last step drew nothing.
