@@ -439,6 +439,7 @@ impl Stage for TestBlocks {
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
             ConstantInfo { name: "MEASURED", id: 2 },
+            ConstantInfo { name: "FRONTS", id: 3 },
             ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
         local_size: [64, 1, 1],
@@ -468,6 +469,7 @@ impl Stage for TestBlocks {
                 self.constants.footprint_texels,
                 u32::from(self.constants.behind),
                 u32::from(self.constants.measured),
+                u32::from(self.constants.fronts),
                 self.constants.finest_level,
             ],
         )
@@ -496,6 +498,8 @@ pub struct TestBlocksConstants {
     pub behind: bool,
     /// There are several ranges, and blocks were measured; all are due in a single one.
     pub measured: bool,
+    /// Blocks are tested by how near their faces are at each texel as well.
+    pub fronts: bool,
     /// `FINEST_LEVEL` in GLSL.
     pub finest_level: u32,
 }
@@ -503,7 +507,7 @@ pub struct TestBlocksConstants {
 impl Default for TestBlocksConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, measured: true, finest_level: 1 }
+        Self { footprint_texels: 4, behind: true, measured: true, fronts: true, finest_level: 1 }
     }
 }
 
@@ -729,6 +733,7 @@ impl Stage for TestObjects {
             ConstantInfo { name: "FOOTPRINT_TEXELS", id: 0 },
             ConstantInfo { name: "BEHIND", id: 1 },
             ConstantInfo { name: "BOXES", id: 2 },
+            ConstantInfo { name: "FRONTS", id: 3 },
             ConstantInfo { name: "KIND_COUNT", id: 6 },
             ConstantInfo { name: "FINEST_LEVEL", id: 7 },
         ],
@@ -761,6 +766,7 @@ impl Stage for TestObjects {
                 self.constants.footprint_texels,
                 u32::from(self.constants.behind),
                 u32::from(self.constants.boxes),
+                u32::from(self.constants.fronts),
                 self.constants.kind_count,
                 self.constants.finest_level,
             ],
@@ -790,6 +796,8 @@ pub struct TestObjectsConstants {
     pub behind: bool,
     /// What was not known to show must show by its box as well.
     pub boxes: bool,
+    /// It must not be hidden by how near its faces are at each texel either.
+    pub fronts: bool,
     /// How many kinds there are, at least 1: most scenes have one, and pay for no more.
     pub kind_count: u32,
     /// `FINEST_LEVEL` in GLSL.
@@ -799,7 +807,7 @@ pub struct TestObjectsConstants {
 impl Default for TestObjectsConstants {
     /// The values that GLSL gives.
     fn default() -> Self {
-        Self { footprint_texels: 4, behind: true, boxes: true, kind_count: 1, finest_level: 1 }
+        Self { footprint_texels: 4, behind: true, boxes: true, fronts: true, kind_count: 1, finest_level: 1 }
     }
 }
 

@@ -29,6 +29,9 @@ pub const DEPTH_SLACK_PER_PIXEL: f32 = 12.0;
 /// `ROUNDING` in GLSL.
 pub const ROUNDING: f32 = 2.3841858e-7;
 
+/// Pyramid texels that a test against fronts may look at.
+pub const FRONT_TEXELS: u32 = 256;
+
 /// Work groups of every stage that walks a list.
 pub const LIST_LOCAL_SIZE: u32 = 64;
 

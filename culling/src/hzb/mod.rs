@@ -1,6 +1,7 @@
 //! `hzb`: two-phase hierarchical-Z culling (Haar & Aaltonen 2015, "GPU-Driven Rendering Pipelines"), the baseline that
 //! engines ship today. What the last frame saw is drawn first; its depth hides most of the rest.
 
+pub mod fronts;
 pub mod iterative;
 mod pyramid;
 pub mod twin;

@@ -1,10 +1,11 @@
 //! The hierarchical-Z stages in plain Rust: their definition.
 
+use super::fronts::Fronts;
 use crate::frustum::twin::{clip_from_bounds, farthest_along, grid_px, left_out, ClipBox};
 use glam::{Vec2, Vec4};
 use shaders::types::{
-    Bounds, CullView, PyramidLevel, BLOCK_OBJECTS, DEPTH_SLACK_PER_PIXEL, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER,
-    REDUCED_LEVELS, ROUNDING,
+    Bounds, CullView, PyramidLevel, BLOCK_OBJECTS, DEPTH_SLACK_PER_PIXEL, FRONT_TEXELS, OBJECT_ALWAYS_KEPT,
+    OBJECT_WIDE_RASTER, REDUCED_LEVELS, ROUNDING,
 };
 
 /// The farthest (smallest) of the source's texels under each texel of the next level.
@@ -132,6 +133,31 @@ impl PyramidTest<'_> {
         let PyramidLevel { first, width, .. } = self.levels[level as usize];
         let span = |axis: usize| footprint.first[axis] >> level..=footprint.last[axis] >> level;
         span(1).all(|y| span(0).all(|x| footprint.nearest < self.texels[(first + y * width + x) as usize]))
+    }
+
+    /// Twin of `hidden_by_fronts`.
+    pub fn hides_by_fronts(&self, bounds: &Bounds, view: &CullView) -> bool {
+        let clip = clip_from_bounds(bounds, view);
+        let footprint = footprint_of(&clip, view, bounds.flags);
+        if footprint.crosses_near {
+            return false;
+        }
+        let Footprint { first, last, .. } = footprint;
+        let span = |axis: usize, level: u32| (first[axis] >> level)..=(last[axis] >> level);
+        let texels = |level: u32| span(0, level).count() * span(1, level).count();
+        let mut level = self.finest_level;
+        while level < self.coarsest_level && texels(level) > FRONT_TEXELS as usize {
+            level += 1;
+        }
+        let fronts = Fronts::of(&clip, [first, last], footprint.nearest, view, bounds.flags);
+        let PyramidLevel { first: base, width, .. } = self.levels[level as usize];
+        span(1, level).all(|y| {
+            span(0, level).all(|x| {
+                let from = [(x << level).max(first[0]), (y << level).max(first[1])];
+                let to = [(((x + 1) << level) - 1).min(last[0]), (((y + 1) << level) - 1).min(last[1])];
+                fronts.nearest_between(from, to) < self.texels[(base + y * width + x) as usize]
+            })
+        })
     }
 }
 

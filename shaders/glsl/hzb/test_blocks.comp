@@ -14,6 +14,8 @@ layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 layout(constant_id = 1) const bool BEHIND = true;
 // There are several ranges, and blocks were measured; all are due in a single one.
 layout(constant_id = 2) const bool MEASURED = true;
+// Blocks are tested by how near their faces are at each texel as well.
+layout(constant_id = 3) const bool FRONTS = true;
 layout(set = 0, binding = 0, scalar) readonly buffer BlockBounds { Bounds items[]; } bounds;
 layout(set = 0, binding = 1, scalar) buffer Spans { BlockSpan items[]; } spans;
 layout(set = 0, binding = 2, scalar) readonly buffer Reach { uint items[]; } reach;
@@ -26,6 +28,7 @@ layout(set = 0, binding = 6, scalar) writeonly buffer Due { uint items[]; } due;
 layout(set = 0, binding = 7, scalar) readonly buffer Seen { uint items[]; } seen;
 layout(push_constant, scalar) uniform Push { uint step; } push;
 #include "hidden.glsl"
+#include "fronts.glsl"
 
 bool was_seen(uint block, uint object_count) {
     uint object = block * BLOCK_OBJECTS;
@@ -46,13 +49,18 @@ bool is_in_view(Bounds bound, CullView view) {
     return (bound.flags & OBJECT_ALWAYS_KEPT) != 0u || !outside_frustum(clip_from_bounds(bound, view), footprint_widening(bound.flags, view));
 }
 
+bool is_hidden(Bounds bound, StepView all) {
+    if (!is_visible(bound, all.view, all.coarsest_level)) return true;
+    return FRONTS && (bound.flags & OBJECT_ALWAYS_KEPT) == 0u && hidden_by_fronts(bound, all.view, all.coarsest_level);
+}
+
 void main() {
     uint block = invocation_index();
     StepView all = views.items[0];
     if (block >= all.block_count) return;
     bool is_due = MEASURED ? is_in_reach(spans.items[block], all) : BEHIND || is_in_view(bounds.items[block], all.view);
     if (push.step == 0u) is_due = is_due && was_seen(block, is_due ? all.object_count : 0u);
-    if (BEHIND && is_due && !is_visible(bounds.items[block], all.view, all.coarsest_level)) {
+    if (BEHIND && is_due && is_hidden(bounds.items[block], all)) {
         is_due = false;
         if (MEASURED) spans.items[block] = BlockSpan(1.0, 0.0);
     }

@@ -13,6 +13,8 @@ layout(constant_id = 0) const uint FOOTPRINT_TEXELS = 4u;
 layout(constant_id = 1) const bool BEHIND = true;
 // What was not known to show must show by its box as well.
 layout(constant_id = 2) const bool BOXES = true;
+// It must not be hidden by how near its faces are at each texel either.
+layout(constant_id = 3) const bool FRONTS = true;
 layout(set = 0, binding = 0, scalar) readonly buffer AllBounds { Bounds items[]; } bounds;
 // What was drawn a step earlier, if it was due there.
 layout(set = 0, binding = 1, scalar) readonly buffer Seen { uint items[]; } seen;
@@ -29,6 +31,7 @@ layout(set = 0, binding = 8, scalar) buffer Counts { uint items[]; } counts;
 layout(set = 0, binding = 9, scalar) readonly buffer Known { uint items[]; } known;
 layout(push_constant, scalar) uniform Push { uint step; } push;
 #include "hidden.glsl"
+#include "fronts.glsl"
 
 void main() {
     uint place = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
@@ -45,9 +48,10 @@ void main() {
     bool is_shown = false;
     if (is_due && BEHIND) is_shown = is_visible(bound, all.view, all.coarsest_level);
     else if (is_due) is_shown = (bound.flags & OBJECT_ALWAYS_KEPT) != 0u || !left_out(clip_from_bounds(bound, all.view), bound.flags, all.view);
+    bool is_asked = BEHIND && is_shown && known.items[object] == 0u && (bound.flags & OBJECT_ALWAYS_KEPT) == 0u;
+    if (FRONTS && is_asked) is_shown = !hidden_by_fronts(bound, all.view, all.coarsest_level);
     // A box that reaches the near plane cannot be rasterised.
-    bool is_tested = BOXES && BEHIND && is_shown && known.items[object] == 0u && (bound.flags & OBJECT_ALWAYS_KEPT) == 0u
-        && !crosses_near(clip_from_bounds(grown(bound, all.view), all.view));
+    bool is_tested = BOXES && is_asked && is_shown && !crosses_near(clip_from_bounds(grown(bound, all.view), all.view));
     shown.items[object] = !is_shown ? STEP_HIDDEN : is_tested ? STEP_TESTED : STEP_SHOWN;
     if (is_shown) atomicAdd(counts.items[kind_of(object, all) * all.block_count + place], 1u);
 }

@@ -111,7 +111,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
         // In several ranges, and in the only one, where nothing was measured.
         for (step, measured) in [(0, true), (1, true), (2, true), (3, true), (0, false), (1, false)] {
             let due = words(&gpu, BOXES);
-            let behind = step > 0;
+            let (behind, fronts) = (step > 0, step != 2);
             let mut f = gpu.frame();
             let test = hzb::TestBlocks {
                 bounds: bounds.all(),
@@ -127,6 +127,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
                     footprint_texels: 4,
                     behind,
                     measured,
+                    fronts,
                     finest_level: input.finest,
                 },
             };
@@ -135,7 +136,8 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
             let pyramid = behind.then(|| input.test());
             let spans_before = measured.then_some(&mut gpu_spans[..]);
             let seen_blocks = (&input.bounds[..], &seen[..]);
-            let twin_due = twin::test_blocks(seen_blocks, spans_before, found, &input.all, pyramid.as_ref(), step);
+            let twin_due =
+                twin::test_blocks(seen_blocks, spans_before, found, &input.all, pyramid.as_ref(), (step, fronts));
             let found_due = due.read().unwrap();
             differ += found_due.iter().zip(&twin_due).filter(|(a, b)| a != b).count();
             due_blocks += found_due.iter().sum::<u32>() as usize;
@@ -211,17 +213,17 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
         let mut input = Input::by_chance(&mut random, &gpu, projection);
         input.all.block_count = blocks as u32;
         let reach = twin::measure_blocks(&input.bounds, &input.all).1;
-        let (step, behind) = (number as u32 % 3, number % 4 != 0);
+        let (step, behind, fronts) = (number as u32 % 3, number % 4 != 0, number % 2 == 0);
         let [seen, known] =
             [2, 3].map(|one_in| -> Vec<u32> { (0..BOXES).map(|_| u32::from(random.below(one_in) == 0)).collect() });
         let object_meshes: Vec<u32> = (0..BOXES).map(|_| random.below(40) as u32).collect();
         let list = twin::list_blocks(&(0..blocks).map(|_| u32::from(random.below(3) > 0)).collect::<Vec<_>>());
         let listed = &list[LISTED_HEADER as usize..];
-        let found = run(&gpu, &input, (&seen, &known, &object_meshes, &meshes), &list, reach, (step, behind));
+        let found = run(&gpu, &input, (&seen, &known, &object_meshes, &meshes), &list, reach, (step, behind, fronts));
 
         let pyramid = behind.then(|| input.test());
         let objects = (&input.bounds[..], &seen[..], &known[..]);
-        let twin = twin::test_objects(objects, listed, reach, &input.all, pyramid.as_ref(), (step, true));
+        let twin = twin::test_objects(objects, listed, reach, &input.all, pyramid.as_ref(), (step, true, fronts));
         // What the GPU made of each object; small meshes are drawn without a test of their box.
         let small = |object: usize| meshes[object_meshes[object] as usize].index_count <= SMALL;
         let mut becomes = vec![STEP_HIDDEN; BOXES];
@@ -275,7 +277,7 @@ fn run(
     (seen, known, object_meshes, meshes): (&[u32], &[u32], &[u32], &[MeshRange]),
     list: &[u32],
     reach: twin::Reach,
-    (step, behind): (u32, bool),
+    (step, behind, fronts): (u32, bool, bool),
 ) -> Found {
     let block_count = input.all.block_count;
     let (bounds, views, list) = (stored(gpu, &input.bounds), stored(gpu, &[input.all]), stored(gpu, list));
@@ -305,6 +307,7 @@ fn run(
             footprint_texels: 4,
             behind,
             boxes: true,
+            fronts,
             kind_count: 3,
             finest_level: input.finest,
         },

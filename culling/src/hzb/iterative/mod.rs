@@ -56,6 +56,12 @@ pub const OPTIONS: &[OptionInfo] = &[
         help: "what the last frame did not see must show by its rasterised box too, not by the pyramid alone",
     },
     OptionInfo {
+        name: "fronts",
+        default: "all",
+        values: "none|objects|all",
+        help: "what its footprint does not hide is tested by the depths of its faces at up to 256 texels: objects, or blocks of them too",
+    },
+    OptionInfo {
         name: "small",
         default: "6",
         values: "0..=1000000",

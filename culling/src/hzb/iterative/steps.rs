@@ -11,6 +11,13 @@ use shaders::{hzb, BufferRef, ResourceId, Stage};
 /// Reductions of the largest picture: three levels each.
 const MOST_REDUCTIONS: usize = 6;
 
+/// What is tested against the depths of its faces.
+#[derive(Clone, Copy)]
+struct FrontTests {
+    blocks: bool,
+    objects: bool,
+}
+
 /// A step of a frame.
 pub(super) struct Step {
     pub number: u32,
@@ -62,6 +69,7 @@ pub(super) struct Steps {
     reductions: [Buffer<u32>; 2],
     small_indices: u32,
     tests_boxes: bool,
+    fronts: FrontTests,
     share: f32,
     texels: u32,
     subgroup_size: u32,
@@ -100,6 +108,7 @@ impl Steps {
             reductions: [words("full_grids", 3 * MOST_REDUCTIONS)?, words("grids", 3 * MOST_REDUCTIONS)?],
             small_indices: 3 * options.number("small"),
             tests_boxes: options.flag("boxes"),
+            fronts: FrontTests { blocks: options.text("fronts") == "all", objects: options.text("fronts") != "none" },
             share: 1.0 / options.number("factor").max(2) as f32,
             texels: options.number("texels"),
             subgroup_size: gpu.subgroup_size(),
@@ -195,7 +204,13 @@ impl Steps {
             due: self.due.all(),
             seen: step.seen,
             step: number,
-            constants: hzb::TestBlocksConstants { footprint_texels, behind, measured: self.measured, finest_level },
+            constants: hzb::TestBlocksConstants {
+                footprint_texels,
+                behind,
+                measured: self.measured,
+                fronts: self.fronts.blocks,
+                finest_level,
+            },
         };
         f.dispatch(test, block_count);
         let subgroup_size = self.subgroup_size;
@@ -221,6 +236,7 @@ impl Steps {
                 footprint_texels,
                 behind,
                 boxes: self.tests_boxes,
+                fronts: self.fronts.objects,
                 kind_count,
                 finest_level,
             },

@@ -59,7 +59,7 @@ pub fn test_blocks(
     reach: Reach,
     all: &StepView,
     pyramid: Option<&PyramidTest<'_>>,
-    step: u32,
+    (step, fronts): (u32, bool),
 ) -> Vec<u32> {
     let range = |depth: f32| reach.range_of(depth, all);
     let mut due = Vec::with_capacity(blocks.len());
@@ -74,7 +74,11 @@ pub fn test_blocks(
         let was_seen = of_block.next().is_some_and(|objects| objects.iter().any(|seen| *seen != 0));
         let is_due = spans.as_ref().map_or_else(|| in_view(block), |spans| in_reach(&spans[index]));
         let is_due = is_due && (step > 0 || was_seen);
-        let is_hidden = is_due && pyramid.is_some_and(|pyramid| !is_visible(block, &all.view, pyramid));
+        let kept = block.flags & OBJECT_ALWAYS_KEPT != 0;
+        let hides = |pyramid: &PyramidTest<'_>| {
+            !is_visible(block, &all.view, pyramid) || fronts && !kept && pyramid.hides_by_fronts(block, &all.view)
+        };
+        let is_hidden = is_due && pyramid.is_some_and(hides);
         if let Some(spans) = spans.as_mut().filter(|_| is_hidden) {
             spans[index] = NOWHERE;
         }
@@ -92,14 +96,14 @@ pub fn list_blocks(due: &[u32]) -> Vec<u32> {
 }
 
 /// What becomes of each object of the listed blocks in a step: STEP_*; of all others nothing is said. By object, `seen`: it is due a step
-/// earlier; `known`: it is known to show, and needs no box. Twin of `hzb/test_objects`.
+/// earlier; `known`: it is known to show, and needs no box and no test against its fronts. Twin of `hzb/test_objects`.
 pub fn test_objects(
     (bounds, seen, known): (&[Bounds], &[u32], &[u32]),
     listed: &[u32],
     reach: Reach,
     all: &StepView,
     pyramid: Option<&PyramidTest<'_>>,
-    (step, boxes): (u32, bool),
+    (step, boxes, fronts): (u32, bool, bool),
 ) -> Vec<Option<u32>> {
     let becomes = |object: usize| {
         let (bound, seen, known) = (&bounds[object], seen[object] != 0, known[object] != 0);
@@ -112,6 +116,9 @@ pub fn test_objects(
             Some(pyramid) => is_visible(bound, &all.view, pyramid),
             None => kept || !left_out(&clip_from_bounds(bound, &all.view), bound.flags, &all.view),
         };
+        let is_asked = shown && !known && !kept;
+        let shown =
+            shown && !pyramid.is_some_and(|pyramid| fronts && is_asked && pyramid.hides_by_fronts(bound, &all.view));
         let rasterises = || !kept && !crosses_near(&clip_from_bounds(&grown(bound, &all.view), &all.view));
         match (shown, boxes && pyramid.is_some() && !known && shown && rasterises()) {
             (false, _) => STEP_HIDDEN,
