@@ -67,9 +67,10 @@ fn is_in_front(clip: DVec4) -> bool {
     clip.w > 0.0
 }
 
-/// The pixels of the block along one side of the picture: as many before the light's own as after it, less one. None if none is on it.
+/// The pixels of the block along one side of the picture: as many on each side of the edge of pixels that is nearest the light. None if none of
+/// them is in the picture.
 fn side(light: f64, size_px: u32) -> Option<[u32; 2]> {
-    let first = ((light + 1.0) * 0.5 * f64::from(size_px)).floor() - f64::from(FLARE_BLOCK_PX / 2);
+    let first = ((light + 1.0) * 0.5 * f64::from(size_px)).round() - f64::from(FLARE_BLOCK_PX / 2);
     let from = first.max(0.0);
     let to = (first + f64::from(FLARE_BLOCK_PX)).min(f64::from(size_px));
     (from < to).then_some([from as u32, to as u32])
@@ -81,7 +82,12 @@ mod tests {
     use scenes::{Pose, Projection, Shot};
 
     fn view(projection: Projection) -> View {
-        View::new(&Shot { pose: Pose::looking_at(DVec3::ZERO, DVec3::NEG_Z), seconds: 0.0, projection }, [200, 100], 0, 1.0 / 256.0)
+        View::new(
+            &Shot { pose: Pose::looking_at(DVec3::ZERO, DVec3::NEG_Z), seconds: 0.0, projection },
+            [200, 100],
+            0,
+            1.0 / 256.0,
+        )
     }
 
     /// A quarter turn from top to bottom, looking along -z.
@@ -97,7 +103,11 @@ mod tests {
     fn a_block_lies_around_its_light() {
         let ahead = Light::Towards(DVec3::NEG_Z);
         assert_eq!(block(ahead), Some([[92, 42], [108, 58]]));
-        assert_eq!(ahead.place(&wide()).map(|place| place.block.depth), Some(0.0), "as far as what nothing was drawn over");
+        assert_eq!(
+            ahead.place(&wide()).map(|place| place.block.depth),
+            Some(0.0),
+            "as far as what nothing was drawn over"
+        );
         // Half way up from the middle is a quarter of 100 pixels from the top.
         assert_eq!(block(Light::Towards(DVec3::new(0.0, 0.5, -1.0))), Some([[92, 17], [108, 33]]));
         assert_eq!(block(Light::At(DVec3::new(0.0, 1.0, -2.0))), block(Light::Towards(DVec3::new(0.0, 0.5, -1.0))));

@@ -6,7 +6,6 @@ use crate::recorder::{Op, QueriesRef, Shapes};
 use crate::target::Target;
 use shaders::GraphicsStage;
 
-
 impl Frame {
     /// Draws shapes to the target, with depth test. Not among the report's draws.
     pub fn draw_shapes<S: GraphicsStage>(&mut self, stage: S, shapes: Shapes, target: &Target) {

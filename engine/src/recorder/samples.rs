@@ -27,10 +27,9 @@ impl Unresolved {
             steps.extend(read.iter().flat_map(|(target, samples)| self.depth(target, samples)));
         }
         match op {
-            Op::Draw { target, .. }
-            | Op::Query { target, .. }
-            | Op::Shapes { target, .. }
-            | Op::Clear { target } => self.note(target),
+            Op::Draw { target, .. } | Op::Query { target, .. } | Op::Shapes { target, .. } | Op::Clear { target } => {
+                self.note(target)
+            }
             _ => {}
         }
         steps
