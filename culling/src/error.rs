@@ -39,6 +39,12 @@ pub enum Error {
         /// What it may be.
         expected: String,
     },
+    /// Lens flares need something that this run does not give them.
+    #[error("lens flares need {needs}")]
+    Flares {
+        /// What they need, and how to give it.
+        needs: String,
+    },
     /// The method needs something that this run does not give it.
     #[error("method '{method}' needs {needs}")]
     Missing {

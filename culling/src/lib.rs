@@ -8,6 +8,7 @@ pub mod boxes;
 pub mod eovc;
 mod error;
 pub mod farthest;
+pub mod flares;
 pub mod frustum;
 pub mod horizon;
 pub mod hzb;
@@ -28,7 +29,7 @@ pub mod woc;
 pub mod world;
 
 pub use error::Error;
-pub use method::{Guarantee, Method, Setup, TestedBoxes, Work};
+pub use method::{Flare, Guarantee, Method, Setup, TestedBoxes, Work};
 pub use methods::{default_method, find, refusal, Entry, METHODS, PARTICULAR};
 pub use options::{OptionInfo, Options};
 pub use pack::DrawList;

@@ -23,6 +23,26 @@ impl std::fmt::Display for Guarantee {
     }
 }
 
+/// What a frame knew of its light, in samples of the light's block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flare {
+    /// What the brightness came from.
+    pub used: u64,
+    /// What the frame's own query counted; none if there was nothing to ask.
+    pub asked: Option<u64>,
+    /// What its depth buffer leaves visible; none where work is not counted.
+    pub visible: Option<u64>,
+    /// What a whole block holds.
+    pub of: u64,
+}
+
+impl Flare {
+    /// A number of samples as a part of the block, 0 to 1.
+    pub fn fraction(&self, samples: u64) -> f64 {
+        samples as f64 / self.of.max(1) as f64
+    }
+}
+
 /// What a frame did to find out what is visible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
@@ -44,6 +64,8 @@ pub struct Work {
     pub early_stops: u64,
     /// Nodes of a hierarchy that were fitted to bounds that had changed.
     pub refits: u64,
+    /// What is known of the light of a lens flare; none where there is none.
+    pub flare: Option<Flare>,
 }
 
 /// The boxes that a frame rasterised to find out what is visible: world bounds in metres, before they are grown to cover all

@@ -153,7 +153,8 @@ fn stage_of(op: &Op) -> Option<&BoundStage> {
         Op::Dispatch { stage, .. }
         | Op::DispatchIndirect { stage, .. }
         | Op::Draw { stage, .. }
-        | Op::Query { stage, .. } => Some(stage).filter(|stage| !stage.resources.is_empty()),
+        | Op::Query { stage, .. }
+        | Op::Shapes { stage, .. } => Some(stage).filter(|stage| !stage.resources.is_empty()),
         Op::Clear { .. }
         | Op::Fill { .. }
         | Op::Copy { .. }

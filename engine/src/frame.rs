@@ -16,6 +16,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 mod occlusion;
+mod shapes;
 
 pub use occlusion::{OcclusionQueries, Queried};
 

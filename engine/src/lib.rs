@@ -43,7 +43,7 @@ pub use image::Image;
 pub use lower::folded;
 pub use memory::{Buffer, Placement};
 pub use messages::Message;
-pub use recorder::{Faces, IndexedIndirect, Op, Primitives, QueriesRef, Recorded, Recorder, Surface};
+pub use recorder::{Faces, IndexedIndirect, Op, Primitives, QueriesRef, Recorded, Recorder, Shapes, Surface};
 pub use target::{Format, KeptSample, Samples, Target};
 pub use timers::TimerMode;
 pub use window::{Panel, Shown, Window};

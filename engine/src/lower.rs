@@ -4,7 +4,7 @@ use crate::barriers::{Barrier, Point};
 use crate::features::Extra;
 use crate::gpu::Vulkan;
 use crate::pipeline::{DrawState, Pipeline, INSTANCE_BINDING, VERTEX_BINDING};
-use crate::recorder::{IndexedIndirect, Op, Recorded, Surface};
+use crate::recorder::{Faces, IndexedIndirect, Op, Primitives, Recorded, Surface};
 use crate::target::{Format, Target};
 use crate::timers::{TimerMode, MAX_TIMESTAMPS};
 use crate::transfer::full_barrier;
@@ -15,6 +15,7 @@ use vk::Handle;
 
 mod copies;
 mod queried;
+mod shapes;
 
 /// Bytes of an indexed indirect command.
 const COMMAND_BYTES: u32 = 20;
@@ -175,6 +176,7 @@ impl Recording<'_> {
             Op::Query { stage, draw, queries, first_query, target } => {
                 self.query(stage, draw, (*queries, *first_query), target)?;
             }
+            Op::Shapes { stage, shapes, query, target } => self.shapes(stage, shapes, *query, target)?,
             Op::Clear { target } => self.rendering(target, vk::AttachmentLoadOp::CLEAR, || ()),
             Op::Fill { buffer, value } => {
                 let (raw, offset, size) = range(buffer);
@@ -227,21 +229,7 @@ impl Recording<'_> {
         target: &Target,
         inside: impl FnOnce(),
     ) -> Result<()> {
-        let colour = target.colour.map(|(_, format)| format);
-        self.bind(
-            stage,
-            Some(DrawState {
-                colour,
-                item: target.item.is_some(),
-                depth: self.vulkan.depth,
-                depth_write: !target.depth_read_only && draw.surface != Surface::Translucent,
-                strictly_nearer: target.strictly_nearer,
-                primitives: draw.primitives,
-                faces: draw.faces,
-                blended: draw.surface == Surface::Translucent,
-                samples: target.samples.map_or(1, |samples| samples.count),
-            }),
-        )?;
+        self.bind(stage, Some(self.state((draw.primitives, draw.faces, draw.surface), target)))?;
         let device = &self.vulkan.device;
         let (vertices, vertices_at, _) = range(&draw.vertices);
         let (indices, indices_at, _) = range(&draw.indices);
@@ -258,6 +246,21 @@ impl Recording<'_> {
             inside();
         });
         Ok(())
+    }
+
+    /// How a pipeline draws such things to the target.
+    fn state(&self, (primitives, faces, surface): (Primitives, Faces, Surface), target: &Target) -> DrawState {
+        DrawState {
+            colour: target.colour.map(|(_, format)| format),
+            item: target.item.is_some(),
+            depth: self.vulkan.depth,
+            depth_write: !target.depth_read_only && surface.hides(),
+            strictly_nearer: target.strictly_nearer,
+            primitives,
+            faces,
+            surface: if surface.hides() { Surface::Opaque } else { surface },
+            samples: target.samples.map_or(1, |samples| samples.count),
+        }
     }
 
     /// Runs `inside` between the begin and end of a rendering to the target.

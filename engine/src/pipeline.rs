@@ -5,7 +5,7 @@ use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
 use crate::names::Names;
-use crate::recorder::{Faces, Primitives};
+use crate::recorder::{Faces, Primitives, Surface};
 use crate::target::Format;
 use crate::{pipeline_cache, AdapterInfo, Error, Result};
 use ash::vk;
@@ -44,8 +44,8 @@ pub(crate) struct DrawState {
     pub(crate) strictly_nearer: bool,
     pub(crate) primitives: Primitives,
     pub(crate) faces: Faces,
-    /// Colours are blended by their alpha.
-    pub(crate) blended: bool,
+    /// How colours meet those that are there.
+    pub(crate) surface: Surface,
     /// Samples a pixel.
     pub(crate) samples: u32,
 }
@@ -307,8 +307,11 @@ fn draw_pipeline(
         .alpha_blend_op(vk::BlendOp::ADD);
     let blend = match state.colour {
         Some(Format::Heat) => add,
-        _ if state.blended => over,
-        _ => replace,
+        _ => match state.surface {
+            Surface::Translucent => over,
+            Surface::Light => add,
+            Surface::Opaque | Surface::Masked => replace,
+        },
     };
     let formats = attachment_formats(state);
     let blends = vec![blend; formats.len()];

@@ -41,6 +41,26 @@ pub enum Surface {
     Masked,
     /// Is blended over it by its alpha; never writes depth.
     Translucent,
+    /// Is added to it: light; never writes depth.
+    Light,
+}
+
+impl Surface {
+    /// True if it leaves its depth, so that it can hide what lies behind it.
+    pub fn hides(self) -> bool {
+        matches!(self, Surface::Opaque | Surface::Masked)
+    }
+}
+
+/// Triangles that a vertex shader makes of numbers alone: no buffer, no command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shapes {
+    /// Corners of one.
+    pub corners: u32,
+    /// How many.
+    pub count: u32,
+    /// What they do to what lies behind them.
+    pub surface: Surface,
 }
 
 /// A multi-draw whose commands, and their number, lie on the GPU.
@@ -112,6 +132,17 @@ pub enum Op {
         queries: QueriesRef,
         /// The query of the first command.
         first_query: u32,
+        /// What it is drawn to.
+        target: Target,
+    },
+    /// A drawing stage without buffers; all of it counted by one occlusion query where one is named.
+    Shapes {
+        /// The stage.
+        stage: BoundStage,
+        /// What is drawn.
+        shapes: Shapes,
+        /// The pool, and the query in it.
+        query: Option<(QueriesRef, u32)>,
         /// What it is drawn to.
         target: Target,
     },
@@ -271,6 +302,9 @@ fn describe(op: &Op, name: &impl Fn(ResourceId) -> String) -> String {
                 bindings(stage)
             )
         }
+        Op::Shapes { stage, shapes, .. } => {
+            format!("[{} shapes of {} corners] {}", shapes.count, shapes.corners, bindings(stage))
+        }
         Op::Clear { target } => format!("depth={}", name(target.depth.id)),
         Op::Fill { buffer, value } => format!("{}={value}", name(resource(buffer))),
         Op::Copy { from, to } => format!("{} to {}", name(resource(from)), name(resource(to))),
@@ -305,6 +339,11 @@ pub(crate) fn uses(op: &Op) -> Vec<Use> {
             uses.extend(draw.count.map(|count| Use::read(count.id, Point::Indirect)));
             uses.push(Use::read(resource(&draw.vertices), Point::Vertices));
             uses.push(Use::read(resource(&draw.indices), Point::Vertices));
+            uses.extend(attachments(target));
+            uses
+        }
+        Op::Shapes { stage, target, .. } => {
+            let mut uses = bindings(stage, Point::Drawing);
             uses.extend(attachments(target));
             uses
         }

@@ -7,6 +7,7 @@ pub mod engine;
 pub mod eovc;
 pub mod example;
 pub mod farthest;
+pub mod flares;
 pub mod frustum;
 pub mod hzb;
 pub mod pack;
@@ -56,6 +57,10 @@ pub const STAGES: &[&StageInfo] = &[
     <farthest::DoubleSquares as Stage>::INFO,
     <farthest::FillFromDepth as Stage>::INFO,
     <farthest::TestBounds as Stage>::INFO,
+    <flares::CountBlock as Stage>::INFO,
+    <flares::CountSamples as Stage>::INFO,
+    <flares::DrawSprites as Stage>::INFO,
+    <flares::TestBlock as Stage>::INFO,
     <frustum::CountPlanes as Stage>::INFO,
     <frustum::TestBlocks as Stage>::INFO,
     <frustum::TestBounds as Stage>::INFO,

@@ -23,6 +23,12 @@ pub const FARTHEST_STRIP: u32 = 16;
 /// Squares that cover a whole picture, at most.
 pub const FARTHEST_LOOKUPS: u32 = 256;
 
+/// Sides of the block, in pixels (GPU Gems 29.8.2).
+pub const FLARE_BLOCK_PX: u32 = 16;
+
+/// Sprites of a lens flare.
+pub const FLARE_SPRITES: u32 = 7;
+
 /// `DEPTH_SLACK_PER_PIXEL` in GLSL.
 pub const DEPTH_SLACK_PER_PIXEL: f32 = 12.0;
 
@@ -31,6 +37,15 @@ pub const ROUNDING: f32 = 2.3841858e-7;
 
 /// Pyramid texels that a test against fronts may look at.
 pub const FRONT_TEXELS: u32 = 256;
+
+/// `LIGHT_X` in GLSL.
+pub const LIGHT_X: f32 = 0.4;
+
+/// `LIGHT_Y` in GLSL.
+pub const LIGHT_Y: f32 = 0.82;
+
+/// `LIGHT_Z` in GLSL.
+pub const LIGHT_Z: f32 = 0.41;
 
 /// Work groups of every stage that walks a list.
 pub const LIST_LOCAL_SIZE: u32 = 64;
@@ -338,6 +353,28 @@ const _: () = {
     assert!(std::mem::offset_of!(FarthestShape, squares_after) == 8);
     assert!(std::mem::offset_of!(FarthestShape, coarsest_square) == 12);
     assert!(size_of::<FarthestShape>() == 16);
+};
+
+/// The part of a light's block that lies on the screen: pixels from the first corner up to, not with, the second.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct FlareBlock {
+    /// `from_px` in GLSL.
+    pub from_px: [u32; 2],
+    /// `to_px` in GLSL.
+    pub to_px: [u32; 2],
+    /// Of the picture.
+    pub size_px: [u32; 2],
+    /// The light's, reversed.
+    pub depth: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(FlareBlock, from_px) == 0);
+    assert!(std::mem::offset_of!(FlareBlock, to_px) == 8);
+    assert!(std::mem::offset_of!(FlareBlock, size_px) == 16);
+    assert!(std::mem::offset_of!(FlareBlock, depth) == 24);
+    assert!(size_of::<FlareBlock>() == 28);
 };
 
 /// The box of a mesh in object space, rounded outward.

@@ -65,6 +65,11 @@ fn touches(op: &Op) -> Vec<Touch> {
             all.extend(target(to));
             all
         }
+        Op::Shapes { stage: bound, target: to, .. } => {
+            let mut all = stage(bound, Point::Drawing);
+            all.extend(target(to));
+            all
+        }
         Op::Clear { target: to } => target(to),
         Op::Fill { buffer, .. } => vec![touch(id(buffer), Point::Transfer, false, true)],
         Op::Copy { from, to } => {

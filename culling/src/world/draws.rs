@@ -114,7 +114,7 @@ impl World {
     /// write no depth.
     fn prepared(&self, draw: IndexedIndirect, target: &Target) -> (IndexedIndirect, Target) {
         let target = match draw.surface {
-            Surface::Translucent => Target { item: None, depth_read_only: true, ..*target },
+            Surface::Translucent | Surface::Light => Target { item: None, depth_read_only: true, ..*target },
             Surface::Opaque | Surface::Masked => *target,
         };
         (IndexedIndirect { vertices: self.vertices.all().into(), ..draw }, target)

@@ -58,6 +58,10 @@ impl OcclusionQueries {
         self.len
     }
 
+    pub(super) fn raw(&self) -> u64 {
+        self.raw.as_raw()
+    }
+
     /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.len == 0
@@ -117,7 +121,7 @@ impl Frame {
         let Queried { queries, first } = queried;
         assert!(draw.count.is_none(), "{}: a queried draw has no count", S::INFO.name);
         assert!(first + draw.max_draws <= queries.len(), "{}: more draws than queries", S::INFO.name);
-        let named = QueriesRef { raw: queries.raw.as_raw() };
+        let named = QueriesRef { raw: queries.raw() };
         let op = Op::Query { stage: stage.bind(), draw, queries: named, first_query: first, target: *to };
         self.recorder.push(S::INFO.name, op);
     }

@@ -26,8 +26,11 @@ impl Unresolved {
             self.depths = rest;
             steps.extend(read.iter().flat_map(|(target, samples)| self.depth(target, samples)));
         }
-        if let Op::Draw { target, .. } | Op::Query { target, .. } | Op::Clear { target } = op {
-            self.note(target);
+        match op {
+            Op::Draw { target, .. } | Op::Query { target, .. } | Op::Shapes { target, .. } | Op::Clear { target } => {
+                self.note(target)
+            }
+            _ => {}
         }
         steps
     }

@@ -3,6 +3,7 @@
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "instance.glsl"
+#include "light.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 normal_snorm16;    // octahedral
@@ -42,7 +43,7 @@ void main() {
     vec3 normal = cross(object.column_y, object.column_z) * local.x + cross(object.column_z, object.column_x) * local.y
         + cross(object.column_x, object.column_y) * local.z;
     float size = length(normal);
-    float lambert = size > 0.0 ? abs(dot(normal, vec3(0.40, 0.82, 0.41))) / size : 1.0;
+    float lambert = size > 0.0 ? abs(dot(normal, vec3(LIGHT_X, LIGHT_Y, LIGHT_Z))) / size : 1.0;
     vec4 colour = unpackUnorm4x8(object.colour);
     shade = vec4(colour.rgb * (0.25 + 0.75 * lambert), colour.a);
 #ifdef DETAIL

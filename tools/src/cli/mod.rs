@@ -5,7 +5,9 @@ pub mod commands;
 mod compare;
 mod config;
 mod device;
+mod flares;
 mod picture;
+mod shot;
 mod stress;
 mod sweep;
 #[cfg(test)]
@@ -16,8 +18,10 @@ pub use colours::coloured;
 pub use compare::{CompareArgs, COMPARE_HELP};
 pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
+pub use flares::FlareChoice;
 pub use picture::SampleChoice;
 use picture::{bounds_names, parse_shading, parse_size};
+pub use shot::{ShotArgs, Show};
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
 pub use view::{view_help, ViewArgs};
@@ -26,7 +30,7 @@ use crate::run::session::SessionOptions;
 use crate::tables::TABLES;
 use anyhow::{bail, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
 use culling::{OptionInfo, Shading, METHODS, PARTICULAR};
@@ -187,13 +191,16 @@ pub struct BenchArgs {
     /// Samples.
     #[command(flatten)]
     pub samples: SampleChoice,
+    /// Lens flares.
+    #[command(flatten)]
+    pub flares: FlareChoice,
     /// Methods and options.
     #[command(flatten)]
     pub methods: MethodChoice,
     /// Runs a table on its scenes (ours that are built after its paper's, unless --scene names some) and prints its figures
     /// beside the published ones; of `lean`, which is ours, goals beside them. The table chooses methods and settings; the
     /// path is its paper's, the whole of closing-in (eovc-*) or a walk (woc-*, tog-*, lean), unless --path names another
-    #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["method", "detail", "capture", "json"])]
+    #[arg(long, value_name = "TABLE", value_parser = table_names(), conflicts_with_all = ["method", "detail", "capture", "json", "flares"])]
     pub table: Option<String>,
     /// Sweeps of options.
     #[command(flatten)]
@@ -235,64 +242,6 @@ pub struct ReportArgs {
     /// The HTML file; the results' name with .html if left out
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-}
-
-/// What a shot shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Show {
-    /// The picture
-    Colour,
-    /// Depth as grey: near is bright
-    Depth,
-    /// One colour an object
-    Items,
-    /// How often each pixel was shaded
-    Overdraw,
-    /// The boxes that the method rasterised to test what is in them, over the whole scene seen from above
-    Boxes,
-    /// The same boxes over the picture itself
-    BoxesFirstPerson,
-    /// Where each pixel of the frame before goes: direction as hue, length as brightness
-    Motion,
-    /// The depth that the frame before predicts for this one, as grey
-    Warp,
-    /// Where it predicts nothing: orange over the real depth
-    Holes,
-    /// Where it is wrong: red is nearer than the real depth (may hide what shows), blue farther (hides less), dark blue a hole
-    WarpError,
-}
-
-/// `sightline shot`.
-#[derive(Args, Clone, Debug)]
-pub struct ShotArgs {
-    /// Scene, path and size.
-    #[command(flatten)]
-    pub scene: SceneChoice,
-    /// Samples.
-    #[command(flatten)]
-    pub samples: SampleChoice,
-    /// Device.
-    #[command(flatten)]
-    pub device: DeviceArgs,
-    /// The method that draws it
-    #[arg(long, value_name = "METHOD", default_value = culling::default_method().id)]
-    pub method: String,
-    /// Sets the method's option, or how depth is warped for a view of that (warp.seeds=8); may be given several times
-    #[arg(long, value_name = "METHOD.OPTION=VALUE")]
-    pub set: Vec<String>,
-    /// The frame of the run
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub frame: usize,
-    /// Captures this frame with RenderDoc, to a file beside the picture: that of --frame, or one of the two before it, which run
-    /// so that the method has a past
-    #[arg(long, value_name = "FRAME")]
-    pub capture: Option<usize>,
-    /// What to show
-    #[arg(long, value_name = "VIEW", default_value = "colour")]
-    pub view: Show,
-    /// The PNG file
-    #[arg(long, value_name = "FILE", default_value = "out/shot.png")]
-    pub out: PathBuf,
 }
 
 /// `sightline scene`.
@@ -380,6 +329,7 @@ impl SceneChoice {
             shading: self.shading,
             samples: 1,
             bounds: self.bounds,
+            flares: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The arguments of `sightline view`.
 
-use super::{DeviceArgs, MethodChoice, SceneChoice};
+use super::{DeviceArgs, FlareChoice, MethodChoice, SceneChoice};
 use crate::view::keys::KEYS;
 use clap::Args;
 use std::path::PathBuf;
@@ -14,6 +14,9 @@ pub struct ViewArgs {
     /// Scene, path and the window's first size.
     #[command(flatten)]
     pub scene: SceneChoice,
+    /// Lens flares.
+    #[command(flatten)]
+    pub flares: FlareChoice,
     /// Methods and options, in the order of the Tab key.
     #[command(flatten)]
     pub methods: MethodChoice,

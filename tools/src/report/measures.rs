@@ -104,11 +104,26 @@ const WORK: &[Measure] = &[
     measure("node visits", "tree nodes that rays looked at a frame", |_, m| Some(m.node_visits_mean)),
 ];
 
-/// Times always; errors and work only where they were measured.
+/// Of runs with lens flares.
+const FLARES: &[Measure] = &[
+    measure("on screen", "measured frames in which the light is on the screen", |_, m| {
+        m.flare.as_ref().map(|flare| f64::from(flare.frames_on_screen))
+    }),
+    measure("shows", "part of the light's block of 16x16 pixels that shows, by the depth buffer, mean", |_, m| {
+        m.flare.as_ref()?.shows_mean
+    }),
+    measure("error", "between that and the flare's brightness, mean", |_, m| m.flare.as_ref()?.error_mean),
+    measure("worst", "the same in the worst frame", |_, m| m.flare.as_ref()?.error_max),
+];
+
+/// Times always; errors and work only where they were measured, flares where there are any.
 pub fn tables(results: &Results) -> Vec<Table> {
     let all = [("Time and memory", TIMES), ("Errors against the truth", ERRORS), ("What was culled and done", WORK)];
     let known = if is_measured(results) { all.len() } else { 1 };
-    all[..known].iter().map(|(title, measures)| table(results, title, measures)).collect()
+    let flares = ("Lens flare", FLARES);
+    let with_flares = known > 1 && results.methods.iter().any(|method| method.flare.is_some());
+    let tables = all[..known].iter().chain(with_flares.then_some(&flares));
+    tables.map(|(title, measures)| table(results, title, measures)).collect()
 }
 
 fn table(results: &Results, title: &'static str, measures: &[Measure]) -> Table {

@@ -56,6 +56,8 @@ impl Frames {
             ("rays", self.rays.len()),
             ("boxes", self.boxes.len()),
             ("node_visits", self.node_visits.len()),
+            ("flare_by_query", self.flare_by_query.len()),
+            ("flare_by_oracle", self.flare_by_oracle.len()),
         ];
         let plain = plain.map(|(name, length)| (name.to_owned(), length));
         let stages = self.stages.iter().map(|(name, ms)| (format!("stages.{name}"), ms.len()));
@@ -66,6 +68,7 @@ impl Frames {
 impl Method {
     /// JSON has no NaN and no infinity: serde writes `null`, which would read as "identical", "did not run" or not at all.
     fn first_not_finite(&self) -> Option<String> {
+        let flare = self.flare.as_ref();
         let scalars = [
             ("frame_ms.median", Some(self.frame_ms.median)),
             ("frame_ms.p95", Some(self.frame_ms.p95)),
@@ -94,6 +97,9 @@ impl Method {
             ("refits_mean", Some(self.refits_mean)),
             ("node_visits_mean", Some(self.node_visits_mean)),
             ("device_memory_mib", Some(self.device_memory_mib)),
+            ("flare.shows_mean", flare.and_then(|flare| flare.shows_mean)),
+            ("flare.error_mean", flare.and_then(|flare| flare.error_mean)),
+            ("flare.error_max", flare.and_then(|flare| flare.error_max)),
         ];
         let scalars = scalars.map(|(name, value)| (name.to_string(), value));
         let stages = self.stages.iter().enumerate().flat_map(|(index, stage)| {
@@ -114,7 +120,8 @@ impl Frames {
     /// Name and value of everything that is not a whole number.
     fn numbers(&self) -> impl Iterator<Item = (String, Option<f64>)> + '_ {
         let plain = [("frame_ms", &self.frame_ms), ("ssim", &self.ssim), ("overdraw", &self.overdraw)];
-        let plain = plain.into_iter().flat_map(|(name, values)| {
+        let flares = [("flare_by_query", &self.flare_by_query), ("flare_by_oracle", &self.flare_by_oracle)];
+        let plain = plain.into_iter().chain(flares).flat_map(|(name, values)| {
             let at = move |(frame, &value)| (format!("frames.{name}[{frame}]"), Some(value));
             values.iter().enumerate().map(at)
         });

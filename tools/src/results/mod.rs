@@ -5,6 +5,7 @@
 
 mod check;
 pub mod files;
+mod flares;
 pub(crate) mod grid;
 pub(crate) mod output;
 mod parts;
@@ -15,6 +16,7 @@ pub(crate) mod tests;
 pub mod trace;
 mod write;
 
+pub use flares::flares_table;
 pub use parts::parts_table;
 pub(crate) use table::{decibels, error, heading, percent, quantity};
 pub use table::{stages_table, table};
@@ -178,11 +180,31 @@ pub struct Method {
     pub node_visits_mean: f64,
     /// Device memory that the method holds.
     pub device_memory_mib: f64,
+    /// What the lens flare over the method's frames knew of its light; none without `--flares`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flare: Option<FlareErrors>,
     /// The measures of each frame.
     pub frames: Frames,
     /// What the method decided in each frame, warm-up included, and why; empty for methods that decide nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<String>,
+}
+
+/// How far a lens flare was from its light. Parts of the light's block of pixels, 0 to 1; `null`: not measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FlareErrors {
+    /// Whose query said how bright it is: that of the frame before (`next`) or its own (`same`).
+    pub when: String,
+    /// Where its light is: `towards X,Y,Z` or `at X,Y,Z`.
+    pub light: String,
+    /// Measured frames in which the light's block is on the screen.
+    pub frames_on_screen: u32,
+    /// What shows of the light, by the depth buffer.
+    pub shows_mean: Option<f64>,
+    /// Between what the flare's brightness came from and what shows.
+    pub error_mean: Option<f64>,
+    /// The same of the worst frame.
+    pub error_max: Option<f64>,
 }
 
 /// The spread of a method's frame times.
@@ -257,6 +279,12 @@ pub struct Frames {
     pub boxes: Vec<u64>,
     /// Nodes that rays looked at.
     pub node_visits: Vec<u64>,
+    /// What of the light the lens flare's brightness came from, 0 to 1; empty without flares.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flare_by_query: Vec<f64>,
+    /// What of it the frame's depth buffer leaves visible.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flare_by_oracle: Vec<f64>,
     /// Frame times of the frames whose stages were timed, timers included: what [`Frames::stages`] are parts of.
     #[serde(default)]
     pub staged_frame_ms: Vec<f64>,

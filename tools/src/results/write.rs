@@ -28,11 +28,14 @@ impl Results {
         let stages = self.stage_names();
         Ok(write_atomically(path, |to| {
             let mut csv = csv::Writer::from_writer(to);
-            let columns = SCALARS.iter().map(|(name, _)| (*name).to_string());
+            // Files of runs without flares stay as they are.
+            let with_flares = self.methods.iter().any(|method| method.flare.is_some());
+            let scalars = || SCALARS.iter().chain(FLARES.iter().filter(|_| with_flares));
+            let columns = scalars().map(|(name, _)| (*name).to_string());
             let stage_columns = stages.iter().map(|name| format!("stage:{name}"));
             csv.write_record(columns.chain(stage_columns))?;
             for method in &self.methods {
-                let scalars = SCALARS.iter().map(|(_, of)| of(self, method));
+                let scalars = scalars().map(|(_, of)| of(self, method));
                 let times = stages.iter().map(|name| stage_ms(method, name));
                 csv.write_record(scalars.chain(times))?;
             }
@@ -126,4 +129,12 @@ const SCALARS: &[(&str, Cell)] = &[
     ("refits_mean", |_, m| measured(m, m.refits_mean)),
     ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),
     ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
+];
+
+/// The columns between those and the stages, of runs with lens flares.
+const FLARES: &[(&str, Cell)] = &[
+    ("flare_when", |_, m| m.flare.as_ref().map_or(String::new(), |flare| flare.when.clone())),
+    ("flare_shows_mean", |_, m| optional(m.flare.as_ref().and_then(|flare| flare.shows_mean))),
+    ("flare_error_mean", |_, m| optional(m.flare.as_ref().and_then(|flare| flare.error_mean))),
+    ("flare_error_max", |_, m| optional(m.flare.as_ref().and_then(|flare| flare.error_max))),
 ];

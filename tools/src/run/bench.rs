@@ -1,5 +1,6 @@
 //! The main job: methods × frames, once for the clock and once for the truth, into results.
 
+mod flares;
 mod pairs;
 mod stages;
 
@@ -97,6 +98,9 @@ pub fn bench_watched(
     }
     let mut methods: Vec<_> =
         contenders.iter().zip(&records).map(|(contender, records)| method(contender, records, shared_mib)).collect();
+    for (method, records) in methods.iter_mut().zip(&records) {
+        flares::put(method, session.options().flares.as_ref(), &records.work);
+    }
     pairs.iter().for_each(|pair| pair.report(&mut methods));
     Ok(Results { methods, ..header(session, &options.command) })
 }
@@ -300,6 +304,7 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
         node_visits: records.counted(|work| work.node_visits),
         staged_frame_ms: records.staged.iter().map(|report| report.frame_ms).collect(),
         stages: stage_times(&records.staged),
+        ..Frames::default()
     }
 }
 

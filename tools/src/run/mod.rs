@@ -75,9 +75,13 @@ impl Contender {
         let before = session.gpu.memory_mib();
         let setup = Setup { gpu: &session.gpu, world: &session.world, options: &options, visible: visible.clone() };
         let made = (entry.make)(&setup).and_then(|method| culling::translucent::after(method, &setup));
+        let made = made.and_then(|method| match session.options().flares {
+            None => Ok(method),
+            Some(flares) => culling::flares::after(method, &setup, flares),
+        });
         let method = match made {
-            // Names the method itself.
-            Err(error @ culling::Error::Missing { .. }) => return Err(error.into()),
+            // The one names the method itself, the other is nothing that a method does.
+            Err(error @ (culling::Error::Missing { .. } | culling::Error::Flares { .. })) => return Err(error.into()),
             made => made.with_context(|| format!("method '{}'", options.label()))?,
         };
         let memory_mib = session.gpu.memory_mib() - before;

@@ -2,6 +2,7 @@
 
 use crate::run::targets::Targets;
 use anyhow::{bail, Context, Result};
+use culling::flares::Settings;
 use culling::{Shading, View, World};
 use engine::{Gpu, GpuOptions};
 use scenes::{CameraPath, MovingBounds, Scene, SceneOptions, Shot};
@@ -34,6 +35,8 @@ pub struct SessionOptions {
     pub samples: u32,
     /// How the bounds of what moves are had.
     pub bounds: MovingBounds,
+    /// Lens flares over each frame, if any.
+    pub flares: Option<Settings>,
 }
 
 impl Default for SessionOptions {
@@ -51,6 +54,7 @@ impl Default for SessionOptions {
             shading: None,
             samples: 1,
             bounds: MovingBounds::default(),
+            flares: None,
         }
     }
 }

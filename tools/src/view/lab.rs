@@ -148,6 +148,10 @@ impl Lab {
         let view = self.session.look_through(shot, 0)?;
         let needs_truth = controls.truth || controls.show == Show::FalsePositives;
         self.ready(controls, &view)?;
+        if let (Some((_, contender)), true) = (&mut self.running, self.session.options().flares.is_some()) {
+            // What is compared is the picture below a lens flare.
+            contender.method.count_work(needs_truth);
+        }
         let plain = controls.show == Show::Colour && !needs_truth;
         let watched = match (plain, self.frames % WATCH_EVERY) {
             (false, _) => Watched::Items,

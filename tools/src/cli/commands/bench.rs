@@ -4,7 +4,7 @@ use super::say;
 use crate::cli::BenchArgs;
 use crate::report::{self, Gallery};
 use crate::results::trace;
-use crate::results::{parts_table, stages_table, table, Results};
+use crate::results::{flares_table, parts_table, stages_table, table, Results};
 use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, Seen};
 use crate::run::capture::CaptureOrder;
 use crate::run::methods::{parse_methods, particular_methods, Chosen};
@@ -18,7 +18,8 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let mut methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
     make_folder(&arguments.out)?;
     let capture = capture(arguments)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
+    let options = arguments.flares.of(arguments.samples.of(arguments.scene.session()?));
+    let mut session = Session::open(&arguments.device.gpu(), options)?;
     if arguments.methods.method == "all" {
         let (taken, left_out) = particular_methods(&session.scene, &arguments.methods.sets())?;
         methods.extend(taken);
@@ -87,6 +88,10 @@ fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
         return say(&serde_json::to_string_pretty(results)?);
     }
     say(&table(results))?;
+    match flares_table(results) {
+        flares if flares.is_empty() => {}
+        flares => say(&flares)?,
+    }
     if arguments.explain {
         for method in &results.methods {
             say(&stages_table(results, method))?;

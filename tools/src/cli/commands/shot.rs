@@ -40,7 +40,8 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
         );
     }
     let mut order = order(arguments)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
+    let opened = arguments.flares.of(arguments.samples.of(arguments.scene.session()?));
+    let mut session = Session::open(&arguments.device.gpu(), opened)?;
     let visible = match entry.id {
         "ref" => Some(RunTruth::visible_sets(&mut session, cache_folder().as_deref(), || ())?),
         _ => None,
@@ -105,7 +106,17 @@ fn picture(session: &mut Session, contender: &mut Contender, arguments: &ShotArg
             return Ok((picture, caption));
         }
     };
-    Ok((picture, String::new()))
+    Ok((picture, flare_caption(contender)?))
+}
+
+/// What the lens flare over the picture says of its light, if there is one.
+fn flare_caption(contender: &Contender) -> Result<String> {
+    let Some(flare) = contender.method.work()?.flare else { return Ok(String::new()) };
+    let shows = |samples: u64| format!("{:.1} %", 100.0 * flare.fraction(samples));
+    Ok(match flare.asked {
+        None => ": the flare's light is not on the screen".to_owned(),
+        Some(asked) => format!(": {} of the flare's light shows; it is drawn by {}", shows(asked), shows(flare.used)),
+    })
 }
 
 /// What `--set warp.OPTION=VALUE` says.

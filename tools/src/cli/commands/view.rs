@@ -7,7 +7,7 @@ use anyhow::Result;
 
 pub fn run(arguments: &ViewArgs) -> Result<()> {
     crate::view::run(ViewOptions {
-        session: arguments.scene.session()?,
+        session: arguments.flares.of(arguments.scene.session()?),
         gpu: arguments.device.gpu(),
         methods: parse_methods(&arguments.methods.method, &arguments.methods.sets())?,
         keys: arguments.keys.as_deref().map(keys::parse_steps).transpose()?,
