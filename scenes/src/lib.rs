@@ -28,7 +28,7 @@ pub use check::MOST_OBJECTS;
 pub use error::SceneError;
 pub use gltf::{import, import_bytes};
 pub use gltf_export::export_glb;
-pub use mesh_boxes::{MeshBoxes, MOST_BOXES};
+pub use mesh_boxes::{primitives, MeshBoxes, MOST_BOXES};
 pub use model::{Aabb, Building, Cell, Cells, Mesh, Object, Portal, Scene, Surface, Topology, Walk};
 pub use moving::{MovingBounds, MovingBoxes};
 pub use open::open;

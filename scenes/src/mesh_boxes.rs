@@ -36,7 +36,7 @@ pub struct MeshBoxes {
 
 impl Mesh {
     /// The corners of each triangle, line or point; the last corner of a line is there twice, that of a point three times.
-    pub fn primitives(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+    pub fn primitives(&self) -> impl Iterator<Item = [Vec3; 3]> + Clone + '_ {
         primitives(&self.indices, self.topology, |index| self.positions[index as usize])
     }
 }
@@ -45,8 +45,8 @@ impl Mesh {
 pub fn primitives<'a>(
     indices: &'a [u32],
     topology: Topology,
-    position: impl Fn(u32) -> Vec3 + 'a,
-) -> impl Iterator<Item = [Vec3; 3]> + 'a {
+    position: impl Fn(u32) -> Vec3 + Clone + 'a,
+) -> impl Iterator<Item = [Vec3; 3]> + Clone + 'a {
     let corners = match topology {
         Topology::Triangles => 3,
         Topology::Lines => 2,

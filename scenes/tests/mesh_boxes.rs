@@ -71,7 +71,7 @@ fn local(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> + Clone + '_ {
 }
 
 fn boxes(mesh: &Mesh, most: u32) -> MeshBoxes {
-    MeshBoxes::around(mesh.primitives().collect::<Vec<_>>().into_iter(), most)
+    MeshBoxes::around(mesh.primitives(), most)
 }
 
 /// The faults of one mesh's boxes; `spoil` plants errors.
