@@ -128,14 +128,7 @@ impl WorldBounds {
     /// # Panics
     /// If there is no such mesh.
     pub fn in_object_space(&self, mesh: u32) -> Aabb {
-        let farthest = &self.reaches[mesh as usize].farthest;
-        let along = |axis: usize, sign: i32| {
-            let mut direction = [0; 3];
-            direction[axis] = sign;
-            farthest[direction_index(direction)]
-        };
-        let ends = |sign: i32| DVec3::new(along(0, sign), along(1, sign), along(2, sign));
-        Aabb { min: -ends(-1), max: ends(1) }
+        self.reaches[mesh as usize].in_object_space()
     }
 }
 
@@ -151,7 +144,7 @@ const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
 /// How far a mesh reaches in each of the 26 directions, by [`direction_index`]; entry 13 is unused.
 #[derive(Clone, Debug)]
-struct Reach {
+pub(crate) struct Reach {
     farthest: [f64; 27],
     /// Largest magnitude of each coordinate.
     largest: [f64; 3],
@@ -162,6 +155,9 @@ fn direction_index(direction: [i32; 3]) -> usize {
 }
 
 impl Reach {
+    /// Of no point: a union with it changes nothing.
+    pub(crate) const NOTHING: Reach = Reach { farthest: [f64::NEG_INFINITY; 27], largest: [0.0; 3] };
+
     /// Of a mesh, or of the box that it declares, if that can be believed.
     fn of(mesh: &Mesh) -> Self {
         match mesh.honoured_bounds() {
@@ -172,24 +168,53 @@ impl Reach {
     }
 
     fn of_points(points: impl Iterator<Item = DVec3>) -> Self {
-        let mut farthest = [f64::NEG_INFINITY; 27];
-        for point in points {
-            let [x, y, z] = point.to_array();
-            // The entries from 14 on are one of each pair of opposite directions.
-            for index in 14..27 {
-                let (dx, dy, dz) = (index % 3, index / 3 % 3, index / 9);
-                let along = (dx as f64 - 1.0) * x + (dy as f64 - 1.0) * y + (dz as f64 - 1.0) * z;
-                // Not f64::max, which forgets NaN: a broken vertex must show in the bounds, and stays once it is there.
-                if along > farthest[index] || along.is_nan() {
-                    farthest[index] = along;
-                }
-                if -along > farthest[26 - index] || along.is_nan() {
-                    farthest[26 - index] = -along;
-                }
+        let mut reach = Self::NOTHING;
+        points.for_each(|point| reach.take(point));
+        Reach { largest: reach.largest_coordinates(), ..reach }
+    }
+
+    /// Reaches as far as this point too.
+    pub(crate) fn take(&mut self, point: DVec3) {
+        let [x, y, z] = point.to_array();
+        let farthest = &mut self.farthest;
+        // The entries from 14 on are one of each pair of opposite directions.
+        for index in 14..27 {
+            let (dx, dy, dz) = (index % 3, index / 3 % 3, index / 9);
+            let along = (dx as f64 - 1.0) * x + (dy as f64 - 1.0) * y + (dz as f64 - 1.0) * z;
+            // Not f64::max, which forgets NaN: a broken vertex must show in the bounds, and stays once it is there.
+            if along > farthest[index] || along.is_nan() {
+                farthest[index] = along;
+            }
+            if -along > farthest[26 - index] || along.is_nan() {
+                farthest[26 - index] = -along;
             }
         }
-        let axis = |positive: usize| farthest[positive].max(farthest[26 - positive]);
-        Reach { largest: [axis(14), axis(16), axis(22)], farthest }
+    }
+
+    /// Reaches as far as both.
+    pub(crate) fn union(&self, other: &Reach) -> Reach {
+        Reach { farthest: std::array::from_fn(|index| self.farthest[index].max(other.farthest[index])), ..*self }
+    }
+
+    /// The same, of points that the GPU rounds as it does those of `whole`: where its triangles lie is as uncertain as their corners, however
+    /// small the part of them that is meant.
+    pub(crate) fn rounded_as(self, whole: &Reach) -> Reach {
+        Reach { largest: whole.largest_coordinates(), ..self }
+    }
+
+    fn largest_coordinates(&self) -> [f64; 3] {
+        [14, 16, 22].map(|positive| self.farthest[positive].max(self.farthest[26 - positive]))
+    }
+
+    /// The smallest box around it.
+    pub(crate) fn in_object_space(&self) -> Aabb {
+        let along = |axis: usize, sign: i32| {
+            let mut direction = [0; 3];
+            direction[axis] = sign;
+            self.farthest[direction_index(direction)]
+        };
+        let ends = |sign: i32| DVec3::new(along(0, sign), along(1, sign), along(2, sign));
+        Aabb { min: -ends(-1), max: ends(1) }
     }
 
     /// An upper bound of `row . p` over the vertices.
@@ -209,7 +234,7 @@ impl Reach {
         sum
     }
 
-    fn transformed(&self, world_from_object: &DAffine3) -> Aabb {
+    pub(crate) fn transformed(&self, world_from_object: &DAffine3) -> Aabb {
         let columns = world_from_object.matrix3;
         let translation = world_from_object.translation.to_array();
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);

@@ -6,7 +6,8 @@ use super::types;
 use crate::contract::*;
 
 /// The boxes of listed nodes of the hierarchy, counted by occlusion queries: several nodes a query where they
-/// are tested together or stand for one (CHC++, multiqueries and tight bounds). Boxes are grown as those of objects are.
+/// are tested together or stand for one (CHC++, multiqueries and tight bounds), and several boxes for a leaf where its object has such
+/// (GPU Gems 29.5.1). Boxes are grown as those of objects are.
 #[derive(Clone, Copy, Debug)]
 pub struct TestNodes {
     /// `nodes` in GLSL.
@@ -15,6 +16,8 @@ pub struct TestNodes {
     pub listed: BufferRef<u32>,
     /// `views` in GLSL.
     pub views: BufferRef<types::BoxView>,
+    /// `bounds` in GLSL.
+    pub bounds: BufferRef<types::Bounds>,
 }
 
 impl Stage for TestNodes {
@@ -28,6 +31,7 @@ impl Stage for TestNodes {
             BindingInfo { name: "nodes", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "listed", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
             BindingInfo { name: "views", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "bounds", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
         ],
         push_size: 0,
         constants: &[],
@@ -40,14 +44,19 @@ impl Stage for TestNodes {
     };
 
     fn bind(&self) -> BoundStage {
-        BoundStage::new(Self::INFO, vec![self.nodes.into(), self.listed.into(), self.views.into()], &[], vec![])
+        BoundStage::new(
+            Self::INFO,
+            vec![self.nodes.into(), self.listed.into(), self.views.into(), self.bounds.into()],
+            &[],
+            vec![],
+        )
     }
 }
 
 impl GraphicsStage for TestNodes {}
 
-/// The boxes of listed objects, each counted by an occlusion query: no colour, no depth is written (GPU Gems
-/// 29.2). The boxes are grown to cover all that their objects can (include/box.glsl).
+/// The boxes of listed objects, counted by an occlusion query for each object, which may have several (GPU Gems
+/// 29.5.1): no colour, no depth is written (29.2). The boxes are grown to cover all that their objects can (include/box.glsl).
 #[derive(Clone, Copy, Debug)]
 pub struct TestObjects {
     /// `bounds` in GLSL.

@@ -10,13 +10,15 @@
 use super::hierarchy::{Hierarchy, Place};
 use super::policy::Policy;
 use super::recording::{Asking, Recording};
+use super::several::BOXES_OPTION;
 use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
 use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, SPLIT_OPTION];
+pub const OPTIONS: &[OptionInfo] =
+    &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, BOXES_OPTION, WINDOW_OPTION, SPLIT_OPTION];
 
 struct Chc {
     on: Asking,
@@ -46,7 +48,7 @@ impl Method for Chc {
         if !walk.nodes.begin(world, view)? {
             walk.policy.rebuilt(&walk.nodes, world);
         }
-        let mut frame = on.begin(f, (world, view), target, Some(walk.nodes.tree.nodes()))?;
+        let mut frame = on.begin(f, (world, view), target, walk.nodes.numbered(world))?;
         walk.nodes.unbounded().iter().try_for_each(|object| frame.draw(*object))?;
         loop {
             // 1. Near to far: open, draw, ask.
@@ -71,7 +73,7 @@ impl Method for Chc {
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
-        Ok(Some(self.walk.nodes.boxes(self.on.tested())))
+        Ok(Some(self.walk.nodes.shown(self.on.tested())))
     }
 
     fn choices(&self) -> Vec<String> {
@@ -114,7 +116,7 @@ impl Walk {
             self.nodes.state_mut(node).whole = !is_leaf;
             return self.draw_all(node, frame);
         }
-        frame.ask(&[node])?;
+        frame.ask(self.nodes.asked(node))?;
         self.waiting.push((node, was_visible));
         // What was visible is drawn whatever the answer, which is for the next frame.
         if was_visible {

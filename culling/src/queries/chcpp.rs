@@ -13,6 +13,7 @@
 use super::hierarchy::{Hierarchy, Place};
 use super::multi;
 use super::recording::{Asking, Recording};
+use super::several::BOXES_OPTION;
 use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
 use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
@@ -24,6 +25,7 @@ use scenes::Aabb;
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::DETAIL_OPTION,
     MIN_PIXELS_OPTION,
+    BOXES_OPTION,
     WINDOW_OPTION,
     SPLIT_OPTION,
     OptionInfo {
@@ -94,7 +96,7 @@ impl Method for ChcPlusPlus {
         self.check_last_answers()?; // 1. leaves that the last frame asked about
         let ChcPlusPlus { on, walk, window, left, .. } = self;
         walk.nodes.begin(world, view)?;
-        let mut frame = on.begin(f, (world, view), target, Some(walk.nodes.tree.nodes()))?;
+        let mut frame = on.begin(f, (world, view), target, walk.nodes.numbered(world))?;
         walk.nodes.unbounded().iter().try_for_each(|object| frame.draw(*object))?;
         loop {
             while walk.waiting.len() < *window {
@@ -122,7 +124,7 @@ impl Method for ChcPlusPlus {
     }
 
     fn tested_boxes(&self, _world: &World) -> Result<Option<TestedBoxes>> {
-        Ok(Some(self.walk.nodes.boxes(self.on.tested())))
+        Ok(Some(self.walk.nodes.shown(self.on.tested())))
     }
 
     fn forget(&mut self) -> Result<()> {
@@ -220,7 +222,8 @@ impl Walk {
 
     fn ask(&self, nodes: &[u32], frame: &mut Recording<'_>) -> Result<()> {
         let tight = |node: &u32| tight_bounds(self.nodes.tree.host(), *node, self.levels, self.surface);
-        frame.ask(&nodes.iter().flat_map(tight).collect::<Vec<_>>())
+        let boxes: Vec<u32> = nodes.iter().flat_map(tight).flat_map(|node| self.nodes.asked(node)).collect();
+        frame.ask(boxes.into_iter())
     }
 }
 

@@ -1,15 +1,17 @@
 //! The hierarchy of `eovc` on the host, and what is remembered of each node.
 
-use super::recording::Recording;
+use super::recording::{Numbered, Recording};
+use super::several::SeveralBoxes;
 use crate::roc::twin::selection;
 use crate::tree::{split, Tree};
 use crate::{Result, Setup, TestedBoxes, View, World};
 use glam::DVec3;
 use scenes::bvh::NO_NODE;
 use scenes::Aabb;
-use shaders::types::{CullView, SELECT_NONE, SELECT_TESTED};
+use shaders::types::{Bounds, CullView, SELECT_NONE, SELECT_TESTED};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 /// Where a box lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +25,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    pub(super) fn of(bound: &shaders::types::Bounds, view: &CullView) -> Place {
+    pub(super) fn of(bound: &Bounds, view: &CullView) -> Place {
         match selection(bound, 0, view) {
             SELECT_NONE => Place::Outside,
             SELECT_TESTED => Place::Testable,
@@ -55,6 +57,8 @@ pub(super) fn distance(bounds: &Aabb, eye: DVec3) -> f64 {
 /// The tree, what is known of its nodes, and the queue that brings them near to far.
 pub(super) struct Hierarchy {
     pub(super) tree: Tree,
+    /// Of leaves; none if each is asked about by the box that it has as a node.
+    several: Option<SeveralBoxes>,
     states: Vec<State>,
     pub(super) frame: u64,
     unbounded: Vec<u32>,
@@ -71,6 +75,7 @@ impl Hierarchy {
         Ok(Hierarchy {
             unbounded: unbounded.map(|(object, _)| object as u32).collect(),
             states: vec![State::default(); tree.len()],
+            several: SeveralBoxes::new(setup)?,
             frame: 0,
             builds: tree.builds(),
             queue: BinaryHeap::new(),
@@ -83,6 +88,7 @@ impl Hierarchy {
     /// Begins a frame. True if the tree is as it was; else nothing is remembered of its nodes.
     pub(super) fn begin(&mut self, world: &World, view: &View) -> Result<bool> {
         self.tree.follow(world)?;
+        self.several.as_mut().map_or(Ok(()), |several| several.follow(world))?;
         let same = self.tree.builds() == self.builds;
         if !same {
             self.builds = self.tree.builds();
@@ -133,7 +139,39 @@ impl Hierarchy {
     }
 
     pub(super) fn place(&self, node: u32) -> Place {
-        Place::of(&self.tree.host_nodes()[node as usize].bounds, &self.view)
+        let own = Place::of(&self.tree.host_nodes()[node as usize].bounds, &self.view);
+        match (own, self.of_leaf(node)) {
+            (Place::Outside, _) | (_, None) => own,
+            (_, Some((several, object))) => several.place(object, &self.view),
+        }
+    }
+
+    /// The boxes of the object of a leaf.
+    fn of_leaf(&self, node: u32) -> Option<(&SeveralBoxes, u32)> {
+        Some((self.several.as_ref()?, self.object(node)?))
+    }
+
+    /// What the numbers of boxes mean.
+    pub(super) fn numbered(&self, world: &World) -> Numbered {
+        let boxes = self.several.as_ref().map_or_else(|| world.bounds(), SeveralBoxes::on_device);
+        Numbered { nodes: Some(self.tree.nodes()), boxes }
+    }
+
+    /// The numbers of the boxes that a node is asked about by: its own, or those of its object, which come after all nodes'.
+    pub(super) fn asked(&self, node: u32) -> Range<u32> {
+        let nodes = self.tree.len() as u32;
+        self.of_leaf(node).map_or(node..node + 1, |(several, object)| {
+            let boxes = several.of(object);
+            nodes + boxes.start..nodes + boxes.end
+        })
+    }
+
+    /// The boxes that a node is asked about by, as the device has them.
+    pub(super) fn asked_bounds(&self, node: u32) -> impl Iterator<Item = &Bounds> + '_ {
+        self.asked(node).map(|number| match (&self.several, (number as usize).checked_sub(self.tree.len())) {
+            (Some(several), Some(of_object)) => several.bounds(of_object as u32),
+            _ => &self.tree.host_nodes()[number as usize].bounds,
+        })
     }
 
     /// The object of a leaf, unless it is drawn anyway.
@@ -191,11 +229,19 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// The boxes of some nodes.
-    pub(super) fn boxes(&self, nodes: &[u32]) -> TestedBoxes {
-        let (leaves, groups): (Vec<_>, Vec<_>) =
-            nodes.iter().map(|node| &self.tree.host().nodes()[*node as usize]).partition(|node| node.is_leaf());
-        let bounds = |nodes: Vec<&scenes::bvh::Node>| nodes.into_iter().map(|node| node.bounds).collect();
-        TestedBoxes { groups: bounds(groups), singles: bounds(leaves) }
+    /// Boxes by number, for pictures.
+    pub(super) fn shown(&self, boxes: &[u32]) -> TestedBoxes {
+        let mut shown = TestedBoxes::default();
+        for number in boxes {
+            match (self.tree.host().nodes().get(*number as usize), &self.several) {
+                (Some(node), _) if !node.is_leaf() => shown.groups.push(node.bounds),
+                (Some(leaf), _) => shown.singles.push(leaf.bounds),
+                (None, several) => {
+                    let of_object = *number - self.tree.len() as u32;
+                    shown.singles.extend(several.iter().map(|several| several.aabb(of_object)));
+                }
+            }
+        }
+        shown
     }
 }

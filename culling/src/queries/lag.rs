@@ -3,7 +3,8 @@
 
 use super::hierarchy::Place;
 use super::recording::Asking;
-use super::wait::HostBounds;
+use super::several::BOXES_OPTION;
+use super::wait::{HostBounds, InView};
 use super::MIN_PIXELS_OPTION;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
@@ -15,6 +16,7 @@ pub const LAGS: &str = "what comes into view is known, and drawn, one frame late
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::DETAIL_OPTION,
     MIN_PIXELS_OPTION,
+    BOXES_OPTION,
     OptionInfo {
         name: "every",
         default: "1",
@@ -40,7 +42,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let objects = setup.world.len();
     Ok(Box::new(QueryLag {
         on: Asking::new(setup, "query-lag")?,
-        bounds: HostBounds::new(setup.world)?,
+        bounds: HostBounds::new(setup)?,
         visible: vec![true; objects],
         in_view: vec![false; objects],
         asked: Vec::new(),
@@ -54,10 +56,11 @@ impl Method for QueryLag {
         world.update(f);
         f.clear(target);
         self.check_last_answers()?; // 1. the query results of the last frame
-        let sorted = self.bounds.near_to_far(world, view); // 2. opaque objects, near to far
+        let mut sorted = self.bounds.near_to_far(world, view)?; // 2. opaque objects, near to far
+        sorted.retain(|found| found.place != Place::Outside);
         self.forget_what_left(&sorted);
-        let mut frame = self.on.begin(f, (world, view), target, None)?;
-        for (object, place) in sorted {
+        let mut frame = self.on.begin(f, (world, view), target, self.bounds.numbered(world))?;
+        for InView { object, place, boxes } in sorted {
             let due = (self.frame + u64::from(object)) % self.every == 0;
             match (place, self.visible[object as usize]) {
                 // "Skip occlusion testing for models that are too near the viewer" (29.6.2): the eye may be inside the box.
@@ -68,7 +71,7 @@ impl Method for QueryLag {
                     self.asked.push(object);
                 }
                 (_, false) => {
-                    frame.ask(&[object])?; // 4. of what was not, the box is asked about
+                    frame.ask(boxes)?; // 4. of what was not, the box, or boxes, are asked about
                     self.asked.push(object);
                 }
             }
@@ -82,8 +85,7 @@ impl Method for QueryLag {
     }
 
     fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
-        let singles = self.on.tested().iter().map(|object| world.host_bounds()[*object as usize]).collect();
-        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
+        Ok(Some(self.bounds.shown(world, self.on.tested())))
     }
 
     fn forget(&mut self) -> Result<()> {
@@ -105,9 +107,9 @@ impl QueryLag {
         Ok(())
     }
 
-    fn forget_what_left(&mut self, sorted: &[(u32, Place)]) {
+    fn forget_what_left(&mut self, sorted: &[InView]) {
         let mut now = vec![false; self.visible.len()];
-        for (object, _) in sorted {
+        for InView { object, .. } in sorted {
             now[*object as usize] = true;
             self.visible[*object as usize] |= !self.in_view[*object as usize];
         }

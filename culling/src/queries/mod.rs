@@ -26,6 +26,7 @@ pub mod multi;
 pub mod nohc;
 mod policy;
 mod recording;
+mod several;
 pub mod wait;
 
 pub use costs::Costs;

@@ -13,12 +13,14 @@ use super::chc;
 use super::costs::Costs;
 use super::hierarchy::Hierarchy;
 use super::policy::Policy;
+use super::several::BOXES_OPTION;
 use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};
 use crate::tree::SPLIT_OPTION;
 use crate::{Method, OptionInfo, Result, Setup};
 
 /// Queries under way at once, and the hierarchy's split.
-pub const OPTIONS: &[OptionInfo] = &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, WINDOW_OPTION, SPLIT_OPTION];
+pub const OPTIONS: &[OptionInfo] =
+    &[crate::world::DETAIL_OPTION, MIN_PIXELS_OPTION, BOXES_OPTION, WINDOW_OPTION, SPLIT_OPTION];
 
 /// Makes the method; measures the device, once in a program's run.
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {

@@ -35,7 +35,7 @@ impl Policy {
     pub(super) fn asks(&self, nodes: &mut Hierarchy, node: u32, was_visible: bool) -> bool {
         let Policy::ByCost(costs, triangles) = self else { return true };
         let flat = &nodes.tree.host_nodes()[node as usize];
-        let query = costs.query_ms(pixels(&flat.bounds, &nodes.view));
+        let query = costs.query_ms(nodes.asked_bounds(node).map(|bounds| pixels(bounds, &nodes.view)).sum());
         let drawing = costs.draw_ms(f64::from(flat.object_count), triangles[node as usize]);
         let now = nodes.frame;
         let hidden = if was_visible {

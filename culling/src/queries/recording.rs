@@ -4,7 +4,7 @@ use crate::boxes::BoxShape;
 use crate::world::Range;
 use crate::{Error, Options, Result, Setup, View, Work, World};
 use engine::{Buffer, Extra, Frame, IndexedIndirect, OcclusionQueries, Placement, Queried, Target};
-use shaders::types::{DrawCommand, TreeNode};
+use shaders::types::{Bounds, DrawCommand, TreeNode};
 use shaders::{queries, BufferRef};
 
 /// Queries that can be asked before answers must be waited for.
@@ -15,6 +15,14 @@ const MOST_BOXES: usize = 65_536;
 
 /// Steps after which what was recorded is run: a submission times 4,095 stages.
 const MOST_STEPS: usize = 3_000;
+
+/// What the numbers of boxes mean.
+pub(super) struct Numbered {
+    /// First those of nodes, if there are any,
+    pub(super) nodes: Option<BufferRef<TreeNode>>,
+    /// then those of boxes of objects.
+    pub(super) boxes: BufferRef<Bounds>,
+}
 
 /// What is being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,13 +97,13 @@ impl Asking {
         Ok(answers)
     }
 
-    /// Begins a frame. `nodes` are what boxes are numbers of; without, they are objects'.
+    /// Begins a frame. Boxes are numbered as those of `asked` are.
     pub(super) fn begin<'a>(
         &'a mut self,
         f: &'a mut Frame,
         (world, view): (&'a World, &'a View),
         target: &'a Target,
-        nodes: Option<BufferRef<TreeNode>>,
+        asked: Numbered,
     ) -> Result<Recording<'a>> {
         assert_eq!(self.all.len(), world.len(), "this list was made for another world: make the method again");
         self.shape.look(view)?;
@@ -107,7 +115,7 @@ impl Asking {
         self.answers.clear();
         self.work = Work::default();
         self.run = Run::Nothing;
-        Ok(Recording { f, world, view, target, nodes, on: self })
+        Ok(Recording { f, world, view, target, asked, on: self })
     }
 
     /// Draws what the last frame drew, in the same order.
@@ -181,7 +189,7 @@ pub(super) struct Recording<'a> {
     world: &'a World,
     view: &'a View,
     target: &'a Target,
-    nodes: Option<BufferRef<TreeNode>>,
+    asked: Numbered,
     on: &'a mut Asking,
 }
 
@@ -204,12 +212,12 @@ impl Recording<'_> {
     }
 
     /// Asks whether any of some boxes shows.
-    pub(super) fn ask(&mut self, boxes: &[u32]) -> Result<()> {
+    pub(super) fn ask(&mut self, boxes: impl ExactSizeIterator<Item = u32>) -> Result<()> {
         self.make_room(boxes.len())?;
         self.go_on(Run::Boxes)?;
         let command = BoxShape::no_boxes(self.on.boxes.len() as u32);
         self.on.asked.push(DrawCommand { instance_count: boxes.len() as u32, ..command });
-        self.on.boxes.extend_from_slice(boxes);
+        self.on.boxes.extend(boxes);
         self.on.pending += 1;
         self.on.work.queries += 1;
         Ok(())
@@ -292,20 +300,12 @@ impl Recording<'_> {
         let queried = Queried { queries: &on.queries, first: on.run_query };
         let (listed, views) = (on.listed.all(), on.shape.view());
         on.tested.extend_from_slice(&on.boxes[asked[0].first_instance as usize..]);
-        match self.nodes {
+        let (bounds, target) = (self.asked.boxes, self.target.test_only());
+        match self.asked.nodes {
             Some(nodes) => {
-                self.f.query_boxes(
-                    queries::TestNodes { nodes, listed, views },
-                    draw,
-                    queried,
-                    &self.target.test_only(),
-                );
+                self.f.query_boxes(queries::TestNodes { nodes, listed, views, bounds }, draw, queried, &target);
             }
-            None => {
-                let bounds = self.world.bounds();
-                let stage = queries::TestObjects { bounds, listed, views };
-                self.f.query_boxes(stage, draw, queried, &self.target.test_only());
-            }
+            None => self.f.query_boxes(queries::TestObjects { bounds, listed, views }, draw, queried, &target),
         }
     }
 

@@ -2,18 +2,21 @@
 //! are queried, the host waits for the answers, and what shows is drawn and hides what comes next.
 
 use super::hierarchy::{distance, Place};
-use super::recording::Asking;
+use super::recording::{Asking, Numbered};
+use super::several::{SeveralBoxes, BOXES_OPTION};
 use super::MIN_PIXELS_OPTION;
 use crate::world::Still;
 use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Frame, Target};
 use shaders::types::{Bounds, OBJECT_ALWAYS_KEPT};
+use std::ops::Range;
 
 /// How many boxes are queried before the host waits: the abscissa of Zachmann's plot.
 pub const OPTIONS: &[OptionInfo] = &[
     crate::world::SKIP_OPTION,
     crate::world::DETAIL_OPTION,
     MIN_PIXELS_OPTION,
+    BOXES_OPTION,
     OptionInfo {
         name: "batch",
         default: "64",
@@ -32,17 +35,29 @@ struct QueryWait {
 /// Bounds as the device has them, kept on the host.
 pub(super) struct HostBounds {
     bounds: Vec<Bounds>,
+    several: Option<SeveralBoxes>,
     revision: u64,
 }
 
+/// An object whose one box is in view.
+pub(super) struct InView {
+    pub(super) object: u32,
+    /// Where its boxes are: of several, none may be in view.
+    pub(super) place: Place,
+    /// Their numbers.
+    pub(super) boxes: Range<u32>,
+}
+
 impl HostBounds {
-    pub(super) fn new(world: &World) -> Result<Self> {
-        Ok(HostBounds { bounds: world.read_bounds()?, revision: world.bounds_revision() })
+    pub(super) fn new(setup: &Setup<'_>) -> Result<Self> {
+        let (bounds, revision) = (setup.world.read_bounds()?, setup.world.bounds_revision());
+        Ok(HostBounds { bounds, several: SeveralBoxes::new(setup)?, revision })
     }
 
-    /// Objects in view, near to far, each with its place; those that are always kept come first.
-    pub(super) fn near_to_far(&mut self, world: &World, view: &View) -> Vec<(u32, Place)> {
-        self.follow(world);
+    /// Objects in view, near to far, each with its place; those that are always kept come first. Their order does not depend on how many
+    /// boxes they have.
+    pub(super) fn near_to_far(&mut self, world: &World, view: &View) -> Result<Vec<InView>> {
+        self.follow(world)?;
         let (cull, eye) = (view.cull(), view.pose.position);
         let key = |object: usize, bound: &Bounds| match bound.flags & OBJECT_ALWAYS_KEPT {
             0 => distance(&world.host_bounds()[object], eye),
@@ -57,15 +72,34 @@ impl HostBounds {
             .map(|(object, bound, place)| (key(object, bound), object as u32, place))
             .collect();
         found.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
-        found.into_iter().map(|(_, object, place)| (object, place)).collect()
+        let in_view = |(_, object, place)| match &self.several {
+            None => InView { object, place, boxes: object..object + 1 },
+            Some(several) => InView { object, place: several.place(object, &cull), boxes: several.of(object) },
+        };
+        Ok(found.into_iter().map(in_view).collect())
     }
 
-    fn follow(&mut self, world: &World) {
-        if self.revision == world.bounds_revision() {
-            return;
+    fn follow(&mut self, world: &World) -> Result<()> {
+        if self.revision != world.bounds_revision() {
+            self.revision = world.bounds_revision();
+            world.moving_bounds().for_each(|(object, bounds)| self.bounds[object as usize] = bounds);
         }
-        self.revision = world.bounds_revision();
-        world.moving_bounds().for_each(|(object, bounds)| self.bounds[object as usize] = bounds);
+        self.several.as_mut().map_or(Ok(()), |several| several.follow(world))
+    }
+
+    /// What the boxes' numbers mean.
+    pub(super) fn numbered(&self, world: &World) -> Numbered {
+        let boxes = self.several.as_ref().map_or_else(|| world.bounds(), SeveralBoxes::on_device);
+        Numbered { nodes: None, boxes }
+    }
+
+    /// Boxes by number, for pictures.
+    pub(super) fn shown(&self, world: &World, boxes: &[u32]) -> TestedBoxes {
+        let one = |number: &u32| match &self.several {
+            None => world.host_bounds()[*number as usize],
+            Some(several) => several.aabb(*number),
+        };
+        TestedBoxes { groups: Vec::new(), singles: boxes.iter().map(one).collect() }
     }
 }
 
@@ -73,7 +107,7 @@ impl HostBounds {
 pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     Ok(Box::new(QueryWait {
         on: Asking::new(setup, "query-wait")?,
-        bounds: HostBounds::new(setup.world)?,
+        bounds: HostBounds::new(setup)?,
         batch: setup.options.number("batch") as usize,
         still: Still::new(setup.options),
     }))
@@ -87,15 +121,20 @@ impl Method for QueryWait {
             f.skip("queries/test_objects", Still::REASON);
             return self.on.draw_again(f, world, view, target);
         }
-        let sorted = self.bounds.near_to_far(world, view); // 1. objects in view, near to far
-        let mut frame = self.on.begin(f, (world, view), target, None)?;
+        let sorted = self.bounds.near_to_far(world, view)?; // 1. objects in view, near to far
+        let mut frame = self.on.begin(f, (world, view), target, self.bounds.numbered(world))?;
         for batch in sorted.chunks(self.batch) {
-            let mut asked = batch.iter().filter(|(_, place)| *place == Place::Testable);
-            asked.try_for_each(|(object, _)| frame.ask(&[*object]))?; // 2. query the boxes of a batch
+            let mut asked = batch.iter().filter(|found| found.place == Place::Testable);
+            asked.try_for_each(|found| frame.ask(found.boxes.clone()))?; // 2. query the boxes of a batch
             let mut answers = frame.wait()?.into_iter(); // 3. wait for the answers
-            for (object, place) in batch {
-                if *place == Place::Near || answers.next().unwrap_or(true) {
-                    frame.draw(*object)?; // 4. draw what shows
+            for found in batch {
+                let shows = match found.place {
+                    Place::Outside => false,
+                    Place::Near => true,
+                    Place::Testable => answers.next().unwrap_or(true),
+                };
+                if shows {
+                    frame.draw(found.object)?; // 4. draw what shows
                 }
             }
         }
@@ -107,8 +146,7 @@ impl Method for QueryWait {
     }
 
     fn tested_boxes(&self, world: &World) -> Result<Option<TestedBoxes>> {
-        let singles = self.on.tested().iter().map(|object| world.host_bounds()[*object as usize]).collect();
-        Ok(Some(TestedBoxes { groups: Vec::new(), singles }))
+        Ok(Some(self.bounds.shown(world, self.on.tested())))
     }
 
     fn forget(&mut self) -> Result<()> {

@@ -7,6 +7,7 @@ mod draws;
 mod moving;
 mod order;
 mod read;
+mod several;
 mod solids;
 mod still;
 mod ties;
@@ -16,6 +17,7 @@ mod view;
 
 pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
 pub use drawn::{draw_lists, drawn_by, drawn_objects, Drawn};
+pub use several::BoxesOfMeshes;
 pub use solids::Solid;
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
@@ -96,6 +98,7 @@ struct Host {
     object_meshes: Vec<u32>,
     /// What is solid of buildings.
     solids: Vec<Solid>,
+    several: several::Several,
     cells: Option<Cells>,
     /// By object: its mesh in the scene.
     scene_meshes: Vec<u32>,
@@ -178,6 +181,7 @@ impl World {
                     .filter(|at| (object_of_scene[transforms[*at].0 as usize] as usize) < solid)
                     .collect(),
                 solids: solids::solids(scene, &object_of_scene),
+                several: several::Several::of(scene),
                 cells: scene.cells.clone(),
                 object_of_scene,
                 meshes: flat.meshes,

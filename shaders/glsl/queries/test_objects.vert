@@ -1,5 +1,5 @@
-// queries/test_objects: the boxes of listed objects, each counted by an occlusion query: no colour, no depth is written (GPU Gems
-// 29.2). The boxes are grown to cover all that their objects can (include/box.glsl).
+// queries/test_objects: the boxes of listed objects, counted by an occlusion query for each object, which may have several (GPU Gems
+// 29.5.1): no colour, no depth is written (29.2). The boxes are grown to cover all that their objects can (include/box.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "box.glsl"
