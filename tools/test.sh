@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets up and runs all tests, on lavapipe (Mesa's CPU device), so that the results are the same everywhere.
-#   tools/test.sh                         all tests
+#   tools/test.sh                         all tests, those of several files side by side (tools/side_by_side.sh)
+#   tools/test.sh --beside COMMAND...     all tests, and these commands beside them
 #   tools/test.sh --test tidy             arguments go to `cargo test --workspace`
 #   SIGHTLINE_TEST_DEVICE=swiftshader tools/test.sh   on SwiftShader, another CPU device
 #   SIGHTLINE_TEST_DEVICE=any tools/test.sh   leaves the choice of the Vulkan driver to the loader: the tests run on a GPU
@@ -43,5 +44,9 @@ case ${SIGHTLINE_TEST_DEVICE-} in
     *) "$tools/setup.sh" --windows --captures ;;
 esac
 
+case ${1-} in
+    '') exec "$tools/side_by_side.sh" ;;
+    --beside) exec "$tools/side_by_side.sh" "${@:2}" ;;
+esac
 cd "$tools/.."
 exec cargo test --workspace "$@"
