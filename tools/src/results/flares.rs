@@ -18,7 +18,9 @@ pub fn flares_table(results: &Results) -> String {
         let cells = vec![on_screen, cell(flare.shows_mean), cell(flare.error_mean), cell(flare.error_max)];
         grid.rows.push(((*label).to_owned(), cells));
     }
-    let mut lines = vec![format!("lens flare of a light {}, by the query of the {} frame", first.light, first.when)];
+    let query =
+        if first.when == "same" { "its own query, which it waits for" } else { "the query of the frame before" };
+    let mut lines = vec![format!("lens flare of a light {}, each frame's by {query}", first.light)];
     lines.extend(grid.lines("method"));
     if flares.iter().all(|(_, flare)| flare.shows_mean.is_some() && flare.frames_on_screen == 0) {
         lines.push("the light is on the screen in no frame: choose another with --light or --light-at".to_owned());
