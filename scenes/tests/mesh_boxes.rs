@@ -244,6 +244,20 @@ fn a_pyramid_and_a_table_gain_and_a_crate_does_not() {
     assert_eq!(boxes(&crate_, 8).len(), 1);
 }
 
+/// A part in the middle of a triangle is as uncertain on the GPU as the triangle's corners, however near the origin it lies.
+#[test]
+fn boxes_are_rounded_as_the_whole_mesh_is() {
+    let far = 1e6f32;
+    let wide = mesh(Topology::Triangles, [[-far, 0.0, 0.0], [far, 0.0, 0.0], [0.0, 0.0, far]].map(Vec3::from).to_vec());
+    let found = boxes(&wide, 8);
+    assert!(found.len() > 1);
+    // Four roundings by 2^-24 of 10^6.
+    let least = 0.9 * 4.0 * 1e6 / f64::from(1 << 24);
+    for (local, world) in found.in_object_space().zip(found.in_world(DAffine3::IDENTITY)) {
+        assert!(world.min.x < local.min.x - least && world.max.x > local.max.x + least, "{local:?} and {world:?}");
+    }
+}
+
 #[test]
 fn meshes_of_nothing_and_of_no_size_have_one_box() {
     let nothing = Mesh::default();

@@ -7,7 +7,8 @@
 //!
 //! [`super::nohc`] walks in the same way and asks where it pays.
 
-use super::hierarchy::{Hierarchy, Place};
+use super::hierarchy::Hierarchy;
+use super::place::Place;
 use super::policy::Policy;
 use super::recording::{Asking, Recording};
 use super::several::BOXES_OPTION;

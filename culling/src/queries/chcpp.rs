@@ -10,8 +10,9 @@
 //! No frame is left out before a still camera: visible leaves come due while nothing else changes, and which frames ran decides what the
 //! next view begins with.
 
-use super::hierarchy::{Hierarchy, Place};
+use super::hierarchy::Hierarchy;
 use super::multi;
+use super::place::Place;
 use super::recording::{Asking, Recording};
 use super::several::BOXES_OPTION;
 use super::{MIN_PIXELS_OPTION, WINDOW_OPTION};

@@ -1,38 +1,17 @@
 //! The hierarchy of `eovc` on the host, and what is remembered of each node.
 
+use super::place::Place;
 use super::recording::{Numbered, Recording};
 use super::several::SeveralBoxes;
-use crate::roc::twin::selection;
 use crate::tree::{split, Tree};
 use crate::{Result, Setup, TestedBoxes, View, World};
 use glam::DVec3;
 use scenes::bvh::NO_NODE;
 use scenes::Aabb;
-use shaders::types::{Bounds, CullView, SELECT_NONE, SELECT_TESTED};
+use shaders::types::{Bounds, CullView};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
-
-/// Where a box lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
-    /// Out of view.
-    Outside,
-    /// In view, and reaches the near plane: its box cannot be asked about.
-    Near,
-    /// In view.
-    Testable,
-}
-
-impl Place {
-    pub(super) fn of(bound: &Bounds, view: &CullView) -> Place {
-        match selection(bound, 0, view) {
-            SELECT_NONE => Place::Outside,
-            SELECT_TESTED => Place::Testable,
-            _ => Place::Near,
-        }
-    }
-}
 
 /// What is remembered of a node.
 #[derive(Clone, Copy, Debug, Default)]

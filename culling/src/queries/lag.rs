@@ -1,7 +1,7 @@
 //! `query-lag`: answers are read one frame later (GPU Gems 29.4). What was visible is drawn, and queries itself; of what was not, the
 //! box is queried. The host never waits, and what comes into view is missing for a frame.
 
-use super::hierarchy::Place;
+use super::place::Place;
 use super::recording::Asking;
 use super::several::BOXES_OPTION;
 use super::wait::{HostBounds, InView};

@@ -24,6 +24,7 @@ mod hierarchy;
 pub mod lag;
 pub mod multi;
 pub mod nohc;
+mod place;
 mod policy;
 mod recording;
 mod several;

@@ -3,7 +3,7 @@
 //! Together they hold all of the object, so it can show no sample where none of them does. They lie within its one box, and few of them
 //! hold what many do: where more boxes are asked about, no more samples are counted. Boxes that overlap count a sample each.
 
-use super::hierarchy::Place;
+use super::place::Place;
 use crate::world::BoxesOfMeshes;
 use crate::{OptionInfo, Result, Setup, World};
 use engine::{Buffer, Placement};

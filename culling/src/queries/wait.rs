@@ -1,7 +1,8 @@
 //! `query-wait`: the naive draw-and-wait approach (GPU Gems 29.3.1; Zachmann 2008). Objects near to far, in batches: the boxes of one
 //! are queried, the host waits for the answers, and what shows is drawn and hides what comes next.
 
-use super::hierarchy::{distance, Place};
+use super::hierarchy::distance;
+use super::place::Place;
 use super::recording::{Asking, Numbered};
 use super::several::{SeveralBoxes, BOXES_OPTION};
 use super::MIN_PIXELS_OPTION;
