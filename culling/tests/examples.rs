@@ -2,13 +2,19 @@
 
 use std::process::Command;
 
+/// Built with the whole workspace, as the tests are: this package alone would ask its dependencies for fewer features, and all of them
+/// would be built once more.
 fn run(example: &str) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
-        .args(["run", "--quiet", "--package", "sightline-culling", "--example", example])
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
-        .output()
-        .unwrap();
+    let mut build = Command::new(cargo);
+    build.args(["build", "--quiet", "--workspace", "--example", example]);
+    build.args((!cfg!(debug_assertions)).then_some("--release"));
+    let built = build.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).output().unwrap();
+    assert!(built.status.success(), "{example}: {}", String::from_utf8_lossy(&built.stderr));
+    // This test is in `deps`, beside `examples`.
+    let this = std::env::current_exe().unwrap();
+    let program = this.ancestors().nth(2).unwrap().join("examples").join(example);
+    let output = Command::new(program).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{example}: {said}{}", String::from_utf8_lossy(&output.stderr));
     said

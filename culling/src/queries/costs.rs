@@ -54,7 +54,7 @@ const BOX_TRIANGLES: f64 = 6.0;
 impl Costs {
     /// Of a device; measured when first asked for.
     pub fn of(gpu: &Gpu) -> Result<Costs> {
-        let device = gpu.info().map(|info| info.name.clone()).unwrap_or_default();
+        let device = name_of(gpu);
         let mut fitted = FITTED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(costs) = fitted.get(&device) {
             return Ok(*costs);
@@ -62,6 +62,11 @@ impl Costs {
         let costs = fit(gpu)?;
         fitted.insert(device, costs);
         Ok(costs)
+    }
+
+    /// Takes these for the device's from now on, instead of measuring: what decides by them is then the same however busy the machine is.
+    pub fn assume(self, gpu: &Gpu) {
+        FITTED.lock().unwrap_or_else(PoisonError::into_inner).insert(name_of(gpu), self);
     }
 
     /// A query whose boxes cover so many pixels.
@@ -73,6 +78,10 @@ impl Costs {
     pub fn draw_ms(&self, objects: f64, triangles: f64) -> f64 {
         self.command * objects + self.triangle * triangles
     }
+}
+
+fn name_of(gpu: &Gpu) -> String {
+    gpu.info().map(|info| info.name.clone()).unwrap_or_default()
 }
 
 /// Two sizes of box give the cost of a query and of a pixel; one command of many boxes and many of one box, that of a command
