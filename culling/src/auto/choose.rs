@@ -89,10 +89,6 @@ const DRIFT_FRAMES: u32 = 6;
 const SPENT: f64 = 0.02;
 /// Frames at one pace between two trials of a candidate, at least.
 const REST: u32 = 32;
-/// A first trial is two frames, and each may show something else: who took less than so many times the best one's time has a second look,
-const NEARLY: f64 = 1.5;
-/// so many frames after the first.
-const SECOND_LOOK: u32 = 6;
 /// Times that are kept of a candidate: their median is what it takes. An odd number of noisy ones, and few enough to follow the scene.
 const RECENT: usize = 7;
 
@@ -111,8 +107,6 @@ struct Cost {
     allowance: f64,
     /// Frames since it was tried.
     rested: u32,
-    /// It was tried once more since all were tried.
-    had_second_look: bool,
 }
 
 impl Cost {
@@ -136,17 +130,6 @@ impl Cost {
     /// Nothing is known but what it was like to begin.
     fn begin_trial(&mut self) {
         *self = Cost { cold: self.cold, ..Cost::default() };
-    }
-
-    /// What its only trial found may have been bad luck.
-    fn wants_second_look(&self, best_ms: f64) -> bool {
-        let is_near = self.ms().is_some_and(|ms| ms < NEARLY * best_ms);
-        is_near && !self.had_second_look && self.rested >= SECOND_LOOK
-    }
-
-    /// Tried once more: what the first trial found still counts.
-    fn begin_second_look(&mut self) {
-        (self.frames, self.rested, self.had_second_look) = (0, 0, true);
     }
 }
 
@@ -271,7 +254,7 @@ impl Chooser {
     }
 
     /// A frame went by: every other candidate may be tried again for its part of [`SPENT`] of that, once it has saved up what a trial is
-    /// expected to cost beyond the current choice. Those that were nearly as good are soon tried once more without that.
+    /// expected to cost beyond the current choice.
     fn try_one_again(&mut self, pace: Pace, current: usize, current_ms: f64) {
         let others: Vec<usize> = self.worth_trying(pace).filter(|other| *other != current).collect();
         let part = SPENT * current_ms / others.len().max(1) as f64;
@@ -282,9 +265,6 @@ impl Chooser {
             let cost = &mut self.costs[other][row(memory, pace)];
             cost.allowance += part;
             cost.rested += 1;
-            if ready.is_none() && cost.wants_second_look(current_ms) {
-                return cost.begin_second_look();
-            }
             let beyond = |ms: Option<f64>| ms.map_or(0.0, |ms| (ms - current_ms).max(0.0));
             let price = beyond(cost.cold) + counted * beyond(cost.ms());
             if cost.rested >= REST && cost.allowance >= price {

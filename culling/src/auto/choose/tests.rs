@@ -139,22 +139,6 @@ fn under_noise_the_choice_costs_hardly_more_than_the_best_fixed_one() {
 }
 
 /// A first trial in an unlucky moment is made up for.
-/// rooms at cuts (lavapipe): `hzb-iterative` was tried in two frames that took twice its usual time, and was left for the other 24.
-#[test]
-fn an_unlucky_first_trial_is_soon_looked_at_again() {
-    let ms = |candidate: usize, frame: usize| match candidate {
-        ITERATIVE => [29.0, 16.5][usize::from(frame > 3)],
-        FRUSTUM => 22.0,
-        _ => 500.0,
-    };
-    let chosen = run(&mut Chooser::new(MEMORIES.into()), 0..40, cuts, ms);
-    assert!(chosen[24..].iter().all(|candidate| *candidate == ITERATIVE), "{chosen:?}");
-    // Once: who is as slow when looked at again waits its turn.
-    let slow = |candidate: usize, _: usize| [29.0, 500.0, 22.0][candidate];
-    let chosen = run(&mut Chooser::new(MEMORIES.into()), 0..40, cuts, slow);
-    assert!(chosen[5..].iter().filter(|candidate| **candidate == ITERATIVE).count() <= 3, "{chosen:?}");
-}
-
 #[test]
 fn an_unlucky_trial_is_not_for_ever() {
     let unlucky = |frame: usize, candidate: usize| if candidate == FRUSTUM && frame < 12 { 1.7 } else { 1.0 };
