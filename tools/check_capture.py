@@ -48,6 +48,16 @@ def fail(message):
     sys.exit(f"check_capture: {message}")
 
 
+def buffer_order(text):
+    """Stage, buffer, width and height of a --buffer."""
+    label, _, rest = text.partition("=")
+    name, _, size = rest.rpartition(":")
+    sides = size.split("x")
+    if not (label and name and len(sides) == 2 and all(side.isdecimal() and int(side) > 0 for side in sides)):
+        fail(f"--buffer {text}: write STAGE=NAME:WIDTHxHEIGHT, as warp/search_depth=woc.warped:640x360")
+    return label, name, int(sides[0]), int(sides[1])
+
+
 def open_capture(path):
     if not os.path.isfile(path):
         fail(f"{path}: there is no such file")
@@ -166,17 +176,18 @@ def save_targets(controller, title, stages, folder):
 
 
 def save_buffer(controller, title, stages, order, folder):
-    label, _, rest = order.partition("=")
-    name, _, size = rest.rpartition(":")
-    width, height = (int(side) for side in size.split("x"))
+    label, name, width, height = order
     found = [stage for stage in stages if stage.label == label]
-    buffers = [one for one in controller.GetResources() if one.name == name]
-    if not found or not buffers:
-        fail(f"--buffer {order}: no such {'buffer' if found else 'stage'} in the capture")
+    ids = {one.resourceId for one in controller.GetBuffers()}
+    named = {one.name: one for one in controller.GetResources() if one.resourceId in ids}
+    if not found:
+        fail(f"--buffer: the capture has no stage {label}")
+    if name not in named:
+        fail(f"--buffer: the capture has no buffer {name}; it has {', '.join(sorted(named))}")
     controller.SetFrameEvent(found[0].events[-1], True)
-    data = bytes(controller.GetBufferData(buffers[0].resourceId, 0, 4 * width * height))
+    data = bytes(controller.GetBufferData(named[name].resourceId, 0, 4 * width * height))
     if len(data) < 4 * width * height:
-        fail(f"--buffer {order}: the buffer has only {len(data) // 4} floats")
+        fail(f"--buffer: {name} has {len(data) // 4} floats, which are fewer than {width}x{height}")
     path = os.path.join(folder, f"{file_name(title)}.{file_name(label)}.{file_name(name)}.png")
     write_png(path, width, height, grey_of(data))
     print(f"saved {path}")
@@ -231,7 +242,6 @@ def check(order):
             fail("--results needs --frame")
         faults += differences(title, stages, order)
     if order.save:
-        os.makedirs(order.save, exist_ok=True)
         save_targets(controller, title, stages, order.save)
         for buffer in order.buffer:
             save_buffer(controller, title, stages, buffer, order.save)
@@ -247,6 +257,14 @@ def check(order):
 
 def main():
     order = arguments()
+    order.buffer = [buffer_order(text) for text in order.buffer]
+    if order.buffer and not order.save:
+        fail("--buffer needs --save")
+    if order.save:
+        try:
+            os.makedirs(order.save, exist_ok=True)
+        except OSError as error:
+            fail(f"--save {order.save}: {error.strerror}")
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     try:
         faults = check(order)

@@ -25,6 +25,7 @@ mod pipeline;
 mod pipeline_cache;
 mod recorder;
 mod retired;
+mod surfaces;
 mod swapchain;
 mod target;
 mod timers;

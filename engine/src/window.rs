@@ -3,6 +3,8 @@
 use crate::error::Named;
 use crate::gpu::{Gpu, Vulkan};
 use crate::image::Image;
+use crate::instance::Instance;
+use crate::surfaces;
 use crate::swapchain::{blit, extent, next, Next, Swapchain, Terms, Wish, LABEL};
 use crate::target::Format;
 use crate::transfer::{full_barrier, whole_image};
@@ -10,6 +12,7 @@ use crate::{Buffer, Error, Placement, Result};
 use ash::{khr, vk};
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 use shaders::ImageRef;
+use std::ffi::CStr;
 use vk::Handle;
 
 /// A rectangle of pixels laid over a picture.
@@ -244,9 +247,17 @@ fn create_surface(vulkan: &Vulkan, source: &(impl HasDisplayHandle + HasWindowHa
     let gone = |error: raw_window_handle::HandleError| refused(vulkan, &format!("the window has no handle ({error})"));
     let display = source.display_handle().map_err(gone)?.as_raw();
     let window = source.window_handle().map_err(gone)?.as_raw();
+    let Instance { entry, raw, .. } = &vulkan.instance;
+    // SAFETY: the instance is alive and the name ends with a zero.
+    let knows = |call: &CStr| unsafe { entry.get_instance_proc_addr(raw.handle(), call.as_ptr()) }.is_some();
+    let (display, window) =
+        surfaces::as_xcb(display, window).filter(|_| knows(surfaces::XCB)).unwrap_or((display, window));
+    // ash panics where a call is missing.
+    if let Some(call) = surfaces::maker(display).filter(|call| !knows(call)) {
+        return Err(refused(vulkan, &format!("its driver lacks {}", call.to_string_lossy())));
+    }
     // SAFETY: the handles come from `source`, which `Window` keeps for as long as the surface lives.
-    unsafe { ash_window::create_surface(&vulkan.instance.entry, &vulkan.instance.raw, display, window, None) }
-        .named("vkCreateSurfaceKHR")
+    unsafe { ash_window::create_surface(entry, raw, display, window, None) }.named("vkCreateSurfaceKHR")
 }
 
 fn refused(vulkan: &Vulkan, why: &str) -> Error {

@@ -106,6 +106,14 @@ fn what_cannot_be_checked_is_said_in_one_line() {
         (&[capture, "--results", "absent.json", "--frame", "1"], "--results absent.json: "),
         (&[capture, "--results", "junk.json", "--frame", "1"], "--results junk.json: "),
         (&[capture, "--results", "results.json", "--frame", "4"], "--frame 4: results.json has 4 frames"),
+        (&[capture, "--buffer", "draw/objects=world.bounds:2x2"], "--buffer needs --save"),
+        (&[capture, "--save", "junk.rdc"], "--save junk.rdc: File exists"),
+        (&[capture, "--save", ".", "--buffer", "draw/objects=world.bounds:2"], "write STAGE=NAME:WIDTHxHEIGHT"),
+        (
+            &[capture, "--save", ".", "--buffer", "draw/nothing=world.bounds:2x2"],
+            "the capture has no stage draw/nothing",
+        ),
+        (&[capture, "--save", ".", "--buffer", "draw/objects=absent:2x2"], "the capture has no buffer absent; it has "),
     ] {
         let output = check(&folder, arguments);
         let said = String::from_utf8_lossy(&output.stderr);

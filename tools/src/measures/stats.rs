@@ -9,6 +9,18 @@ pub fn mean(samples: &[f64]) -> Option<f64> {
     Some(samples.iter().sum::<f64>() / samples.len() as f64)
 }
 
+/// Each label once, in order of first appearance, with the sum of its values.
+pub fn by_label(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    let mut sums: Vec<(&str, f64)> = Vec::new();
+    for (label, value) in values {
+        match sums.iter_mut().find(|(known, _)| known == label) {
+            Some((_, sum)) => *sum += value,
+            None => sums.push((label, *value)),
+        }
+    }
+    sums
+}
+
 /// The middle sample, or the mean of the two in the middle.
 pub fn median(samples: &[f64]) -> Option<f64> {
     percentile(samples, 50.0)
@@ -43,6 +55,12 @@ mod tests {
         assert_eq!(mean(&[]), None);
         assert_eq!(median(&[]), None);
         assert_eq!(p95(&[]), None);
+    }
+
+    #[test]
+    fn a_label_that_comes_again_is_one_row() {
+        let values = [("b", 1.0), ("a", 2.0), ("b", 4.0)].map(|(label, value)| (label.to_owned(), value));
+        assert_eq!(by_label(&values), [("b", 5.0), ("a", 2.0)]);
     }
 
     #[test]

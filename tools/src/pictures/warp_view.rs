@@ -1,7 +1,7 @@
 //! Pictures of depth warping: a frame's depth as predicted from the frame before, next to what is then drawn.
 
 use crate::measures::metrics::{DepthErrors, FrameImages, NOTICED};
-use crate::measures::stats;
+use crate::measures::stats::{self, by_label};
 use crate::pictures::png_out::{DepthScale, Picture};
 use crate::run::session::Session;
 use crate::run::{Contender, Watched};
@@ -170,7 +170,7 @@ impl Warped {
     pub fn caption(&self) -> Result<String> {
         let errors = self.errors()?;
         let decibel = |psnr: Option<f64>| psnr.map_or("identical".to_owned(), |psnr| format!("{psnr:.1} dB"));
-        let times: Vec<_> = self.stages.iter().map(|(label, ms)| format!("{label} {ms:.1}")).collect();
+        let times: Vec<_> = by_label(&self.stages).iter().map(|(label, ms)| format!("{label} {ms:.1}")).collect();
         let sum: f64 = self.stages.iter().map(|(_, ms)| ms).sum();
         Ok(format!(
             "PSNR {}, SSIM {:.4}; nearer than real: PSNR {}, {:.2} % by more than {noticed:.0} %; farther: PSNR {}, {:.2} % \

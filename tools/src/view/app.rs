@@ -26,6 +26,8 @@ use winit::window::Window;
 
 /// Pixels between the window's edge and the text.
 const MARGIN: u32 = 8;
+/// What is said where the window is there no more.
+const TAKEN_AWAY: &str = "the window system took the window away";
 
 /// The device, and what is shown with it. The window's images go first.
 struct Stage {
@@ -49,6 +51,8 @@ pub struct App {
     recorded: Vec<Shot>,
     told: String,
     dragging: bool,
+    /// The window's size in pixels, as it last said.
+    inner_size: [u32; 2],
     out_of_sight: bool,
     rests: bool,
     last: Option<Instant>,
@@ -75,6 +79,7 @@ impl App {
             recorded: Vec::new(),
             told: String::new(),
             dragging: false,
+            inner_size: [0; 2],
             out_of_sight: false,
             rests: false,
             last: None,
@@ -109,6 +114,7 @@ impl App {
             .with_title(format!("sightline: {}", self.wish.session.scene))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = event_loop.create_window(attributes).context("the window system gives no window")?;
+        self.inner_size = window.inner_size().into();
         self.window = Some(Arc::new(window));
         self.start(self.wish.gpu.clone())
     }
@@ -118,7 +124,7 @@ impl App {
         let window = self.window.clone().context("there is no window")?;
         let gpu = Gpu::open(&GpuOptions { windows: true, ..options })?;
         let mut shown = engine::Window::new(&gpu, window.clone())?;
-        let wanted = <[u32; 2]>::from(window.inner_size());
+        let wanted = self.inner_size;
         let size = shown.size(wanted)?.unwrap_or(self.wish.session.size);
         let mut black = Image::new(&gpu, "view.black", Format::Colour, size)?;
         black.write(&vec![[0; 4]; (size[0] * size[1]) as usize])?;
@@ -179,8 +185,8 @@ impl App {
         if !controls.frozen {
             self.seconds += step;
         }
-        let wanted = <[u32; 2]>::from(window.inner_size());
-        let Some(size) = stage.shown.size(wanted)? else {
+        let wanted = self.inner_size;
+        let Some(size) = stage.shown.size(wanted).map_err(taken_away)? else {
             self.rests = true;
             return self.count(event_loop);
         };
@@ -194,7 +200,8 @@ impl App {
         capture::around(&mut self.capture, &gpu, (self.frames as usize, "view"), || lab.frame(controls, &shot))?;
         let texts = texts(&stage.lab, controls, &self.told, size, window.scale_factor());
         let panels: Vec<Panel<'_>> = texts.iter().map(|(text, at)| panel(text, *at)).collect();
-        self.rests = stage.shown.show(stage.lab.picture(), &panels, wanted)? != Shown::Yes;
+        let shown = stage.shown.show(stage.lab.picture(), &panels, wanted).map_err(taken_away)?;
+        self.rests = shown != Shown::Yes;
         self.count(event_loop)
     }
 
@@ -317,6 +324,14 @@ impl App {
     }
 }
 
+/// A window that took pictures takes no more: another program destroyed it, of which the event may still be on its way.
+fn taken_away(error: engine::Error) -> anyhow::Error {
+    match error {
+        engine::Error::Window { .. } => anyhow!(TAKEN_AWAY),
+        error => error.into(),
+    }
+}
+
 /// The camera as it is flown: with the path's lens.
 fn flown(lab: &Lab, controls: &Controls, path_frame: usize, seconds: f64) -> Shot {
     let path: &CameraPath = lab.session.path();
@@ -351,11 +366,14 @@ fn texts(lab: &Lab, controls: &Controls, told: &str, size: [u32; 2], scale: f64)
     let scale = text_scale(scale);
     let below = |text: &Text| size[1].saturating_sub(text.size[1] + MARGIN);
     let mut texts: Vec<(Text, [u32; 2])> = Vec::new();
-    if let Some(text) = Text::of(&hud::stages(lab), scale) {
+    let help = Text::of(&hud::help(), scale).filter(|_| controls.help);
+    // Where they do not fit side by side, stages are there once the keys are hidden: half of their names would tell nothing.
+    let beside = |text: &Text| help.as_ref().is_none_or(|help| text.size[0] + help.size[0] + 3 * MARGIN <= size[0]);
+    if let Some(text) = Text::of(&hud::stages(lab), scale).filter(beside) {
         let at = [MARGIN, below(&text)];
         texts.push((text, at));
     }
-    if let Some(text) = Text::of(&hud::help(), scale).filter(|_| controls.help) {
+    if let Some(text) = help {
         let at = [size[0].saturating_sub(text.size[0] + MARGIN), below(&text)];
         texts.push((text, at));
     }

@@ -3,6 +3,7 @@
 use super::controls::Controls;
 use super::keys::KEYS;
 use super::lab::Lab;
+use crate::measures::stats::by_label;
 
 /// Letters of the longest line, and of the shortest that lines are cut to in a narrow window.
 const LINE: usize = 92;
@@ -56,13 +57,7 @@ pub fn state(lab: &Lab, controls: &Controls, told: &str, letters: usize) -> Vec<
 
 /// Each stage and its time, in the frame's order, summed over its runs; of many, those that took longest.
 pub fn stages(lab: &Lab) -> Vec<String> {
-    let mut all: Vec<(&str, f64)> = Vec::new();
-    for (label, ms) in &lab.known.stages {
-        match all.iter_mut().find(|(known, _)| known == label) {
-            Some((_, sum)) => *sum += ms,
-            None => all.push((label, *ms)),
-        }
-    }
+    let all = by_label(&lab.known.stages);
     let mut times: Vec<f64> = all.iter().map(|(_, ms)| *ms).collect();
     times.sort_unstable_by(|a, b| b.total_cmp(a));
     let least = times.get(STAGES - 1).copied().unwrap_or(0.0);

@@ -14,8 +14,10 @@ use scenes::{Scene, Shot};
 use shaders::reload::NewShader;
 use std::sync::Arc;
 
-/// One frame in so many is run with stage timers, and its lists are read back: both make it slower.
+/// One frame in so many is run with stage timers, and its lists are read back: both make it slower. The first is a method's second frame:
+/// in its first it knows of none before.
 const WATCH_EVERY: u64 = 8;
+const WATCHED: u64 = 1;
 
 /// What is known of the method that runs, each as of when it was last measured.
 #[derive(Default)]
@@ -43,6 +45,7 @@ pub struct Lab {
     warping: Option<Warping>,
     pub(super) known: Known,
     composed: Option<Image>,
+    /// Of the method that runs.
     frames: u64,
 }
 
@@ -155,7 +158,7 @@ impl Lab {
         let plain = controls.show == Show::Colour && !needs_truth;
         let watched = match (plain, self.frames % WATCH_EVERY) {
             (false, _) => Watched::Items,
-            (true, 0) => Watched::Stages,
+            (true, WATCHED) => Watched::Stages,
             (true, _) => Watched::Nothing,
         };
         self.run(&view, watched)?;
@@ -221,7 +224,7 @@ impl Lab {
             None
         };
         if !there {
-            self.known = Known::default();
+            (self.known, self.frames) = (Known::default(), 0);
         }
         // The one before gives its memory back first.
         (self.running, self.ran) = (None, None);

@@ -98,6 +98,10 @@ fn event_loop() -> Result<EventLoop<()>> {
     if cfg!(target_os = "linux") && !there("DISPLAY") && !there("WAYLAND_DISPLAY") && !there("WAYLAND_SOCKET") {
         return Err(anyhow!("no display: neither DISPLAY nor WAYLAND_DISPLAY is set; {remedy}"));
     }
+    if !there("XDG_RUNTIME_DIR") {
+        // Mesa's layer that sorts devices asks Wayland too, whose library then prints an error that concerns nobody.
+        std::env::set_var("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
     EventLoop::new().map_err(|error| {
         // Only its last words: before them it names a line of the library's source.
         let words = error.to_string();

@@ -1,9 +1,10 @@
 //! Events of the window system become inputs and frames.
 
-use super::App;
+use super::{App, TAKEN_AWAY};
 use crate::view::controls::Controls;
 use crate::view::keys::{Input, Key};
-use std::time::Duration;
+use anyhow::anyhow;
+use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, ElementState, KeyEvent, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
@@ -12,6 +13,8 @@ use winit::window::{CursorGrabMode, WindowId};
 
 /// How long to rest when the window had no image to give.
 const REST: Duration = Duration::from_millis(50);
+/// How long to rest while the window is covered or minimised.
+const OUT_OF_SIGHT: Duration = Duration::from_millis(250);
 /// Pixels of a wheel's notch where it reports pixels.
 const NOTCH_PX: f64 = 40.0;
 
@@ -29,7 +32,12 @@ impl ApplicationHandler for App {
                 event_loop.exit();
                 Ok(())
             }
+            WindowEvent::Destroyed => Err(anyhow!(TAKEN_AWAY)),
             WindowEvent::RedrawRequested => self.frame(event_loop),
+            WindowEvent::Resized(size) => {
+                self.inner_size = size.into();
+                Ok(())
+            }
             WindowEvent::Occluded(out_of_sight) => {
                 self.out_of_sight = out_of_sight;
                 Ok(())
@@ -69,10 +77,11 @@ impl ApplicationHandler for App {
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let Some(window) = &self.window else { return };
-        if self.out_of_sight && !self.wish.is_scripted() {
-            // Nobody sees it: the next event wakes us.
+        let minimised = || window.is_minimized() == Some(true);
+        if !self.wish.is_scripted() && (self.out_of_sight || minimised()) {
+            // Nobody sees it: the next event wakes us, or a look now and then, as not every window system tells of the end.
             self.last = None;
-            event_loop.set_control_flow(ControlFlow::Wait);
+            event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + OUT_OF_SIGHT));
             return;
         }
         if self.rests {
