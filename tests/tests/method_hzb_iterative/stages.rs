@@ -6,15 +6,17 @@ use culling::hzb::twin::{pyramid, PyramidTest};
 use culling::roc::depth_plane;
 use culling::View;
 use engine::{Buffer, Gpu, Placement};
+use glam::DVec3;
 use harness::occludees::Occludees;
 use harness::worlds::special_projections;
 use harness::{gpu, Random};
-use scenes::{Pose, Shot};
+use scenes::{Pose, Projection, Shot};
 use shaders::hzb;
 use shaders::types::*;
 
 const SIZE: [u32; 2] = [161, 97];
 const BOXES: usize = 4_000;
+const WALL: &str = "along a wall";
 
 fn stored<T: bytemuck::Pod>(gpu: &Gpu, data: &[T]) -> Buffer<T> {
     Buffer::with_data(gpu, "test", data, Placement::Storage).unwrap()
@@ -58,6 +60,43 @@ impl Input {
         }
     }
 
+    /// Boxes behind a wall that recedes to the right of the camera, along it: most of them begin nearer than the wall ends, so that footprints hide
+    /// few of them, and their fronts tell.
+    fn along_a_wall(random: &mut Random, gpu: &Gpu) -> Self {
+        const NEAR: f64 = 0.1;
+        let projection = Projection::Perspective { fov_y: 1.0, near: NEAR, far: None };
+        let shot = Shot { pose: Pose::looking_at(DVec3::ZERO, DVec3::NEG_Z), projection, seconds: 0.0 };
+        let view = View::new(&shot, SIZE, 0, gpu.snap_px());
+        let half_width = 0.5f64.tan() * f64::from(SIZE[0]) / f64::from(SIZE[1]);
+        // The wall is at x = 2; left of the middle all is right before the eye.
+        let depth = |column: u32| {
+            let across = (f64::from(column) + 0.5) / f64::from(SIZE[0]) * 2.0 - 1.0;
+            (NEAR / 2.0 * across * half_width) as f32
+        };
+        let columns = (0..SIZE[0]).map(|column| if 2 * column < SIZE[0] { 1.0 } else { depth(column) });
+        let row: Vec<f32> = columns.collect();
+        let mut input = Input::by_chance(random, gpu, projection);
+        input.texels = pyramid(&row.repeat(SIZE[1] as usize), SIZE, &input.levels);
+        for bounds in &mut input.bounds {
+            let half = DVec3::new(random.range(0.05, 0.5), random.range(0.05, 0.5), random.range(0.5, 8.0));
+            let [begin, behind] = [random.range(2.0, 6.0), random.range(0.02, 1.0)];
+            let centre = DVec3::new(2.0 + behind + half.x, random.range(-1.5, 1.5), -begin - half.z);
+            let half_extent = half.as_vec3().to_array();
+            *bounds = Bounds { centre_high: centre.as_vec3().to_array(), centre_low: [0.0; 3], half_extent, ..*bounds };
+        }
+        let all = StepView { view: view.cull(), depth_plane: depth_plane(&view), range_count: 1, ..input.all };
+        Input { all, finest: 1, ..input }
+    }
+
+    /// Every kind of camera, and the wall.
+    fn all(random: &mut Random, gpu: &Gpu) -> Vec<(&'static str, Self)> {
+        let kinds = special_projections().into_iter();
+        let mut all: Vec<_> =
+            kinds.map(|(name, projection)| (name, Input::by_chance(random, gpu, projection))).collect();
+        all.push((WALL, Input::along_a_wall(random, gpu)));
+        all
+    }
+
     fn test(&self) -> PyramidTest<'_> {
         let coarsest_level = self.all.coarsest_level;
         PyramidTest {
@@ -82,8 +121,8 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
     let gpu = gpu();
     let mut random = Random::new(1301);
     let (mut all_blocks, mut differ, mut due_blocks) = (0, 0, 0);
-    for (name, projection) in special_projections() {
-        let input = Input::by_chance(&mut random, &gpu, projection);
+    let mut by_fronts = 0;
+    for (name, input) in Input::all(&mut random, &gpu) {
         let views = StepView { object_count: (BOXES * BLOCK_OBJECTS as usize) as u32, ..input.all };
         let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[views]));
         let (levels, texels) = (stored(&gpu, &input.levels), stored(&gpu, &input.texels));
@@ -139,6 +178,10 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
             let twin_due =
                 twin::test_blocks(seen_blocks, spans_before, found, &input.all, pyramid.as_ref(), (step, fronts));
             let found_due = due.read().unwrap();
+            if fronts && !measured {
+                let plain = twin::test_blocks(seen_blocks, None, found, &input.all, pyramid.as_ref(), (step, false));
+                by_fronts += plain.iter().sum::<u32>() - twin_due.iter().sum::<u32>();
+            }
             differ += found_due.iter().zip(&twin_due).filter(|(a, b)| a != b).count();
             due_blocks += found_due.iter().sum::<u32>() as usize;
             gpu_spans = spans.read().unwrap();
@@ -149,6 +192,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
         due_blocks > all_blocks / 20 && due_blocks < all_blocks / 2,
         "{due_blocks} of {all_blocks} due prove little"
     );
+    assert!(by_fronts as usize > all_blocks / 170, "{by_fronts} blocks hidden by their fronts alone prove little");
     assert_few(differ, all_blocks, "blocks");
 }
 
@@ -209,11 +253,14 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
         (0..40).map(|mesh| MeshRange { first_index: 7 * mesh, index_count: 3 * mesh, vertex_offset: -5 }).collect();
     let blocks = BOXES.div_ceil(BLOCK_OBJECTS as usize);
     let (mut all_objects, mut differ, mut outcomes) = (0, 0, [0usize; 3]);
-    for (number, (name, projection)) in special_projections().into_iter().enumerate() {
-        let mut input = Input::by_chance(&mut random, &gpu, projection);
+    let mut by_fronts = 0;
+    for (number, (name, mut input)) in Input::all(&mut random, &gpu).into_iter().enumerate() {
         input.all.block_count = blocks as u32;
         let reach = twin::measure_blocks(&input.bounds, &input.all).1;
-        let (step, behind, fronts) = (number as u32 % 3, number % 4 != 0, number % 2 == 0);
+        let (step, behind, fronts) = match name {
+            WALL => (1, true, true),
+            _ => (number as u32 % 3, number % 4 != 0, number % 2 == 0),
+        };
         let [seen, known] =
             [2, 3].map(|one_in| -> Vec<u32> { (0..BOXES).map(|_| u32::from(random.below(one_in) == 0)).collect() });
         let object_meshes: Vec<u32> = (0..BOXES).map(|_| random.below(40) as u32).collect();
@@ -224,6 +271,8 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
         let pyramid = behind.then(|| input.test());
         let objects = (&input.bounds[..], &seen[..], &known[..]);
         let twin = twin::test_objects(objects, listed, reach, &input.all, pyramid.as_ref(), (step, true, fronts));
+        let plain = twin::test_objects(objects, listed, reach, &input.all, pyramid.as_ref(), (step, true, false));
+        by_fronts += twin.iter().zip(&plain).filter(|(one, other)| one != other).count();
         // What the GPU made of each object; small meshes are drawn without a test of their box.
         let small = |object: usize| meshes[object_meshes[object] as usize].index_count <= SMALL;
         let mut becomes = vec![STEP_HIDDEN; BOXES];
@@ -255,6 +304,7 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
         assert_eq!(found.grids, if drawn { [9, 2, 1] } else { [0, 2, 1] }, "{name}");
     }
     assert!(outcomes.iter().all(|count| *count > all_objects / 100), "{outcomes:?} of {all_objects} prove little");
+    assert!(by_fronts > all_objects / 100, "{by_fronts} of {all_objects} hidden by their fronts alone prove little");
     assert_few(differ, all_objects, "objects");
 }
 

@@ -10,6 +10,7 @@
 //!   front (see [`crate::seeds`]); that counts as seen. What they miss lies in gaps between it, so that one range will do.
 //! - Without rays r follows from the same change.
 //! - Blocks of objects are tested before their objects, and a block once hidden is hidden for the rest of the frame.
+//! - What its footprint does not hide, block or object, is asked again by how near its faces are at each texel (see [`super::fronts`]).
 //! - In a single range what is drawn first need not be what was seen, if only the rest is tested: the list of one frame serves until owners are
 //!   looked at again. What comes into view meanwhile is tested, and drawn, again.
 //! - Who counts as seen is found out every few frames from the item buffer, as the EOVC thesis filters occluders (III.6.2): exactly who owns
