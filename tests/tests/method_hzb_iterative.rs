@@ -1,5 +1,7 @@
 //! The laws of `hzb-iterative`, its stages against their twins, and what depth ranges promise.
 
+#[path = "method_hzb_iterative/input.rs"]
+mod input;
 #[path = "method_hzb_iterative/seeds.rs"]
 mod seeds;
 #[path = "method_hzb_iterative/stages.rs"]
