@@ -2,7 +2,7 @@
 
 use crate::world::{gpu_bounds, World};
 use crate::{Error, OptionInfo, Options, Result};
-use engine::{Buffer, Gpu, Placement};
+use engine::{Buffer, Gpu};
 use glam::DAffine3;
 use scenes::bvh::{BadBounds, Bvh, BvhOptions, Split, NO_NODE, REBUILD_FACTOR};
 use shaders::types::{Bounds, TreeNode, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC};
@@ -55,9 +55,10 @@ impl Tree {
             .filter(|(_, flags)| **flags & OBJECT_ALWAYS_KEPT != 0)
             .for_each(|(object, _)| unbounded[object] = 1);
         let nodes = flatten(&bvh, &flags);
+        let placement = world.followed_placement();
         Ok(Tree {
-            nodes: Buffer::with_data(gpu, "eovc.nodes", &nodes, Placement::Storage)?,
-            leaves: Buffer::with_data(gpu, "eovc.leaves", bvh.leaf_of_object(), Placement::Storage)?,
+            nodes: Buffer::with_data(gpu, "eovc.nodes", &nodes, placement)?,
+            leaves: Buffer::with_data(gpu, "eovc.leaves", bvh.leaf_of_object(), placement)?,
             bvh,
             options,
             flags,

@@ -64,6 +64,9 @@ pub struct FrameReport {
     pub draws: Vec<IndexedIndirect>,
     /// Submissions.
     pub submissions: u32,
+    /// Uploads that the device was waited for while the frame was recorded: submissions of their own, which none of the times count. What a
+    /// method writes each frame belongs in [`crate::Placement::Upload`], so that there are none once it has run for a few frames.
+    pub uploads: u64,
 }
 
 /// A frame being recorded. Dropping it unfinished runs nothing more.
@@ -79,6 +82,8 @@ pub struct Frame {
     host_since: Instant,
     /// What the host did for the frame before the device got any of it, milliseconds.
     before_submit_ms: f64,
+    /// Uploads of the device before this frame.
+    uploads_before: u64,
 }
 
 impl Frame {
@@ -100,6 +105,7 @@ impl Frame {
             first_submit: None,
             host_since: Instant::now(),
             before_submit_ms: 0.0,
+            uploads_before: gpu.uploads(),
         }
     }
 
@@ -368,6 +374,7 @@ impl Frame {
     /// The same, leaving the pixels' colours as they were: of a frame whose samples are read themselves.
     pub fn finish_unresolved(mut self) -> Result<FrameReport> {
         self.submit_and_wait()?;
+        self.report.uploads = self.gpu.uploads() - self.uploads_before;
         if self.gpu.vulkan()?.instance.validating {
             if let Some(message) = self.gpu.take_messages().into_iter().next() {
                 return Err(Error::Validation { stage: message.stage, text: message.text });
@@ -389,6 +396,10 @@ impl Drop for Frame {
 }
 
 impl Gpu {
+    fn uploads(&self) -> u64 {
+        self.0.vulkan.as_ref().map_or(0, |vulkan| vulkan.uploads.load(Ordering::Relaxed))
+    }
+
     /// Starts recording a frame.
     pub fn frame(&self) -> Frame {
         Frame::new(self)

@@ -8,6 +8,7 @@ use engine::{
     TimerMode,
 };
 use harness::{assert_caught, assert_none, gpu, laws, options, worlds, Case, Lab, Random, Subject};
+use scenes::SceneOptions;
 use shaders::types::DrawCommand;
 use sightline::run::targets::Targets;
 
@@ -62,6 +63,44 @@ fn the_laws_hold_without_any_one_feature() {
         let without = |fault| format!("without {}: {fault}", extra.name());
         assert_none(&faults.into_iter().map(without).collect::<Vec<_>>());
     }
+}
+
+/// Frames of each method that may upload: its buffers are made and filled then.
+const SETTLING: usize = 3;
+
+/// Uploads of a method's later frames, on a device whose memory the host does not see: how far it is from none.
+fn late_uploads(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
+    let mut lab = Lab::new(gpu, case);
+    let sets = lab.sets_for(subject, &case.shots);
+    let mut method = lab.make(subject, &sets);
+    let twice = case.shots.iter().chain(&case.shots).enumerate();
+    let frames: Vec<_> = twice
+        .map(|(frame, shot)| (frame, lab.take_timed(&mut *method, shot, frame % case.shots.len()).report.uploads))
+        .collect();
+    let late = frames.into_iter().filter(|(frame, uploads)| *frame >= SETTLING && *uploads > 0);
+    let place = format!("{} on {}", subject.options.label(), case.name);
+    late.map(|(frame, uploads)| format!("{place}, frame {frame}: {uploads} uploads")).collect()
+}
+
+/// Boxes on their ways, each frame a little later.
+fn moving() -> Case {
+    let scene = scenes::open("moving-boxes", &SceneOptions { scale: 0.2, seed: 1, ..SceneOptions::default() }).unwrap();
+    let camera = &scene.cameras[0];
+    let mut shots = worlds::wander(camera.pose.position, glam::DVec3::ZERO, camera.projection);
+    shots.iter_mut().enumerate().for_each(|(frame, shot)| shot.seconds = 0.1 * frame as f64);
+    Case::new("moving-boxes", scene, shots)
+}
+
+#[test]
+fn no_frame_waits_for_an_upload_of_its_own() {
+    let _turn = gpu();
+    let gpu = open(Extra::MappedMemory);
+    let mut faults = Vec::new();
+    for case in [worlds::walled(200), moving()] {
+        let subjects = culling::METHODS.iter().map(|entry| Subject::named(entry.id));
+        faults.extend(subjects.flat_map(|subject| late_uploads(&gpu, &subject, &case)));
+    }
+    assert_none(&faults);
 }
 
 #[test]

@@ -6,7 +6,7 @@
 use super::place::Place;
 use crate::world::BoxesOfMeshes;
 use crate::{OptionInfo, Result, Setup, World};
-use engine::{Buffer, Placement};
+use engine::Buffer;
 use scenes::Aabb;
 use shaders::types::{Bounds, CullView};
 use shaders::BufferRef;
@@ -44,8 +44,7 @@ impl SeveralBoxes {
             firsts.push(bounds.len() as u32);
         }
         let name = format!("{}.boxes", setup.options.method());
-        let placement = if world.moving().len() > 0 { Placement::Upload } else { Placement::Storage };
-        let mut on_device = Buffer::new(setup.gpu, &name, bounds.len(), placement)?;
+        let mut on_device = Buffer::new(setup.gpu, &name, bounds.len(), world.followed_placement())?;
         on_device.write(&bounds)?;
         Ok(Some(SeveralBoxes { meshes, firsts, bounds, on_device, revision: world.revision() }))
     }

@@ -21,12 +21,12 @@ pub(super) struct DeviceRays {
 }
 
 impl DeviceRays {
-    pub fn new(gpu: &Gpu, nodes: &[SeedNode], shapes: &Shapes) -> Result<Self> {
+    pub fn new(gpu: &Gpu, nodes: &[SeedNode], shapes: &Shapes, followed: Placement) -> Result<Self> {
         // The last level leaves a list behind that none looks at.
         let no_grids = [0, 1, 1, 0].repeat(LEVELS as usize + 1);
         Ok(DeviceRays {
             gpu: gpu.clone(),
-            nodes: Buffer::with_data(gpu, "seeds.nodes", nodes, Placement::Storage)?,
+            nodes: Buffer::with_data(gpu, "seeds.nodes", nodes, followed)?,
             shapes: Buffer::with_data(gpu, "seeds.shapes", &shapes.meshes, Placement::Storage)?,
             filled: Buffer::with_data(gpu, "seeds.filled", &shapes.filled, Placement::Storage)?,
             view: Buffer::new(gpu, "seeds.view", 1, Placement::Upload)?,

@@ -77,7 +77,7 @@ impl Seeds {
         let shapes = Shapes::of(meshes, &vertices, indices);
         let rays = match on_host {
             true => Rays::Host(Box::new(HostRays::new(gpu, world, nodes, shapes)?)),
-            false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes)?)),
+            false => Rays::Device(Box::new(DeviceRays::new(gpu, &nodes, &shapes, world.followed_placement())?)),
         };
         let (usual_size, revision) = (usual_size(world), world.bounds_revision());
         Ok(Some(Seeds { bvh, origin, usual_size, begun_at: revision, revision, is_new: true, refitted: 0, rays }))

@@ -150,6 +150,14 @@ impl World {
         self.host.solid_moves.iter().map(moved).map(move |(scene_object, transform)| (object(scene_object), transform))
     }
 
+    /// Where a buffer lies that follows objects: the host writes it each frame where some can move, and never again where none can.
+    pub(crate) fn followed_placement(&self) -> Placement {
+        match self.host.solid_moves.is_empty() {
+            true => Placement::Storage,
+            false => Placement::Upload,
+        }
+    }
+
     /// The same objects, in the same order, with their bounds as the device has them once [`World::update`] has run.
     pub fn moving_bounds(&self) -> impl Iterator<Item = (u32, Bounds)> + '_ {
         let bounds = self.moving.iter().flat_map(|moving| self.host.solid_moves.iter().map(|at| moving.bounds[*at]));

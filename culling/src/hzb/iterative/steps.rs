@@ -105,7 +105,10 @@ impl Steps {
             boxes: Buffer::with_data(gpu, "hzb.boxes", &no_boxes, Placement::Storage)?,
             shape: BoxShape::new(gpu, "hzb.boxes", kinds as u32)?,
             order: LastToFirst::new(gpu, world)?,
-            reductions: [words("full_grids", 3 * MOST_REDUCTIONS)?, words("grids", 3 * MOST_REDUCTIONS)?],
+            reductions: [
+                Buffer::new(gpu, "hzb.full_grids", 3 * MOST_REDUCTIONS, Placement::Upload)?,
+                words("grids", 3 * MOST_REDUCTIONS)?,
+            ],
             small_indices: 3 * options.number("small"),
             tests_boxes: options.flag("boxes"),
             fronts: FrontTests { blocks: options.text("fronts") == "all", objects: options.text("fronts") != "none" },
