@@ -22,7 +22,7 @@ pub fn parse_methods(list: &str, sets: &[String]) -> Result<Chosen> {
         for set in sets {
             let (method, option, value) = parse_setting(set)?;
             if method == name {
-                options.set(option, value).with_context(|| format!("--set {set}"))?;
+                options.set(option, value)?;
             }
         }
         for setting in inside.split(',').filter(|setting| !setting.is_empty()) {
@@ -47,11 +47,11 @@ pub fn particular_methods(scene: &Scene, sets: &[String]) -> Result<(Chosen, Vec
     Ok((taken, left_out))
 }
 
-/// Method, option and value of `METHOD.OPTION=VALUE`; the method must be there.
+/// Method, option and value of `METHOD.OPTION=VALUE`; there must be such a method, option and value, whether the run has the method or not.
 pub fn parse_setting(set: &str) -> Result<(&str, &str, &str)> {
     let (method, setting) = set.split_once('.').with_context(|| bad_setting(set))?;
-    culling::find(method)?;
     let (option, value) = setting.split_once('=').with_context(|| bad_setting(set))?;
+    culling::find(method)?.default_options().set(option, value).with_context(|| format!("--set {set}"))?;
     Ok((method, option, value))
 }
 
@@ -142,6 +142,9 @@ mod tests {
         assert!(fault("hzb[texels=8", "").contains("not closed"));
         assert!(fault("hzb", "hzb.texels").contains("is no setting"));
         assert!(fault("hzb", "hxb.texels=4").contains("no method 'hxb'"));
+        // Of a method that is not in the run.
+        assert!(fault("none", "hzb.texels=many").contains("--set hzb.texels=many"));
+        assert!(fault("none", "hzb.texel=8").contains("--set hzb.texel=8"));
         assert!(fault(",", "").contains("names no method"));
     }
 }
