@@ -174,6 +174,9 @@ pub const BLOCK_OBJECTS: u32 = 64;
 /// How many visibility flags one invocation of the packing stages walks.
 pub const PACK_CHUNK: u32 = 64;
 
+/// How many objects one invocation of eovc/mark_paths looks at.
+pub const MARK_CHUNK: u32 = 8;
+
 /// Pixels of a column that one invocation of eovc/filter_occluders looks at.
 pub const FILTER_STRIP: u32 = 16;
 

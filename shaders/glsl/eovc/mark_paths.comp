@@ -25,11 +25,12 @@ void climb(uint leaf) {
     }
 }
 
-// An invocation looks at PACK_CHUNK objects, of which few are occluders.
+// An invocation looks at MARK_CHUNK objects, of which few are occluders. Occluders are neighbours in the list, and each waits for the climbs
+// before it: so chunks are short.
 void main() {
-    uint first = invocation_index() * PACK_CHUNK;
+    uint first = invocation_index() * MARK_CHUNK;
     if (first >= push.object_count) return;
-    uint end = min(first + PACK_CHUNK, push.object_count);
+    uint end = min(first + MARK_CHUNK, push.object_count);
     for (uint object = first; object < end; object++)
         if (occluders.items[object] != 0u) climb(leaves.items[object]);
 }

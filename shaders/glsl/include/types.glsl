@@ -16,6 +16,9 @@ const uint BLOCK_OBJECTS = 64u;
 // How many visibility flags one invocation of the packing stages walks.
 const uint PACK_CHUNK = 64u;
 
+// How many objects one invocation of eovc/mark_paths looks at.
+const uint MARK_CHUNK = 8u;
+
 // Pixels of a column that one invocation of eovc/filter_occluders looks at.
 const uint FILTER_STRIP = 16u;
 

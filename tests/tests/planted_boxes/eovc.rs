@@ -7,7 +7,7 @@ use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use scenes::bvh::{Split, NO_NODE};
 use shaders::eovc;
-use shaders::types::{BoxView, DrawCommand, TreeNode, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS, PACK_CHUNK};
+use shaders::types::{BoxView, DrawCommand, TreeNode, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS, MARK_CHUNK};
 
 /// What is wrong with the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,7 +184,7 @@ impl Broken {
             object_count: world.len() as u32,
             frame: self.mark_of_frame(),
         };
-        f.dispatch(mark, (world.len() as u32).div_ceil(PACK_CHUNK));
+        f.dispatch(mark, (world.len() as u32).div_ceil(MARK_CHUNK));
         if self.defect == Defect::PathTooWide {
             let (parents, frame) = (self.tree.host().parents(), self.frame);
             edit(f, &mut self.marked, |marked| {

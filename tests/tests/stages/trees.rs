@@ -6,7 +6,7 @@ use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
 use scenes::bvh::{NodeState, Split};
 use shaders::types::{
-    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, PACK_CHUNK, RAY_OBJECTS,
+    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, MARK_CHUNK, RAY_OBJECTS,
 };
 use shaders::{eovc, pack, roc};
 
@@ -133,7 +133,7 @@ pub fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32
         object_count,
         frame,
     };
-    f.dispatch(mark, object_count.div_ceil(PACK_CHUNK));
+    f.dispatch(mark, object_count.div_ceil(MARK_CHUNK));
     let extract = eovc::ExtractGroups {
         nodes,
         marked: all_marked,
