@@ -5,10 +5,9 @@
 //! (`PixelRoutine.cpp` takes the sample's x from the pixel's where it should add it): 0.75 pixel beside two of four.
 
 use super::samples::{Sampled, SAMPLES};
-use super::targets::Targets;
 use anyhow::{Context, Result};
 use culling::{View, World};
-use engine::Gpu;
+use engine::{Format, Gpu, Image, Target};
 use glam::{DAffine3, DQuat, DVec3, Vec2, Vec3};
 use scenes::{Mesh, Object, Pose, Projection, Scene, Shot, Surface, Topology};
 use std::collections::BTreeMap;
@@ -21,6 +20,7 @@ static MEASURED: Mutex<BTreeMap<String, f32>> = Mutex::new(BTreeMap::new());
 const STANDARD: [[f32; 2]; SAMPLES as usize] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
 
 /// The picture that is measured in: two squares.
+const SIZE: [u32; 2] = [2 * SIDE_PX, SIDE_PX];
 const SIDE_PX: u32 = 8;
 
 /// How far beside a sample its depth is taken at most, in pixels. Less than a step of the vertex grid counts as nothing: bounds have room for that.
@@ -39,7 +39,8 @@ pub(super) fn stray_px(gpu: &Gpu) -> Result<f32> {
 }
 
 fn measure(gpu: &Gpu) -> Result<f32> {
-    if !gpu.info().is_none_or(|info| info.standard_samples) {
+    let Some(info) = gpu.info() else { return Ok(0.0) };
+    if !info.standard_samples {
         // Both are somewhere in the pixel.
         return Ok(std::f32::consts::SQRT_2);
     }
@@ -51,10 +52,17 @@ fn measure(gpu: &Gpu) -> Result<f32> {
 
 /// Where in a pixel the depth of each of its samples is taken: what squares show there that get nearer to the right, and downwards.
 fn places(gpu: &Gpu) -> Result<[Vec2; SAMPLES as usize]> {
-    let size = [2 * SIDE_PX, SIDE_PX];
-    let sampled = Sampled::new(gpu, size, SAMPLES)?;
-    let targets = Targets::new(gpu, size)?;
-    let target = engine::Target { samples: Some(sampled.drawn()), ..targets.timed() };
+    let sampled = Sampled::new(gpu, SIZE, SAMPLES)?;
+    let (colour, depth) = (image(gpu, Format::Colour)?, image(gpu, Format::Depth)?);
+    let target = Target {
+        size: SIZE,
+        colour: Some((colour.view(), Format::Colour)),
+        item: None,
+        depth: depth.view(),
+        depth_read_only: false,
+        strictly_nearer: false,
+        samples: Some(sampled.drawn()),
+    };
     let world = World::new(gpu, &squares())?;
     // A pixel is a unit, and so is a sixteenth of the way from the far plane to the near one: depth says how far from the pixel's corner it is.
     let side = f64::from(SIDE_PX);
@@ -63,7 +71,7 @@ fn places(gpu: &Gpu) -> Result<[Vec2; SAMPLES as usize]> {
     let mut f = gpu.frame();
     world.update(&mut f);
     f.clear(&target);
-    world.draw_all(&mut f, &View::new(&Shot { pose, projection, seconds: 0.0 }, size, 0, gpu.snap_px()), &target);
+    world.draw_all(&mut f, &View::new(&Shot { pose, projection, seconds: 0.0 }, SIZE, 0, gpu.snap_px()), &target);
     f.finish()?;
     let depths = sampled.read_depths()?;
     let width = 4 * SIDE_PX as usize;
@@ -74,6 +82,10 @@ fn places(gpu: &Gpu) -> Result<[Vec2; SAMPLES as usize]> {
     };
     let [left, right] = [SIDE_PX / 2, 3 * SIDE_PX / 2];
     Ok(std::array::from_fn(|sample| Vec2::new(place(sample, left), place(sample, right))))
+}
+
+fn image(gpu: &Gpu, format: Format) -> engine::Result<Image> {
+    Image::new(gpu, "samples.measured", format, SIZE)
 }
 
 /// A square to the left of the middle, nearer to the right, and one to the right of it, nearer downwards: both lean by half a right angle.
