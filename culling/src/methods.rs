@@ -22,8 +22,14 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Why it cannot draw pictures of several samples a pixel of a world; none if it can.
-    pub fn needs_one_sample(&self, world: &World) -> Option<&'static str> {
+    /// Why it cannot draw pictures of several samples a pixel of a world; none if it can. `stray_px` is how far beside a sample the device
+    /// takes its depth, in pixels: no distance at all, but for faults of devices.
+    ///
+    /// A primitive's depth beside what it covers is that of its plane, and may lie before all of the primitive: by its slope times the distance.
+    /// Footprints hold that, as they reach out by their whole range of depth (`include/footprint.glsl`); drawn boxes and rays cannot.
+    pub fn needs_one_sample(&self, world: &World, options: &Options, stray_px: f32) -> Option<&'static str> {
+        let strays = stray_px > 0.0;
+        let has_translucent = world.total() > world.len();
         match self.id {
             "eovc" => Some("it casts one ray through each pixel's centre"),
             "hzb-iterative" => Some("it learns who is seen from the item buffer, which has one object a pixel"),
@@ -32,6 +38,15 @@ impl Entry {
                 Some("it warps moving objects by the item buffer, which has one object a pixel")
             }
             _ if world.has_masked() => Some("masked objects are drawn with one sample a pixel"),
+            "none" | "ref" | "frustum" | "frustum-bvh" => None,
+            "hzb" | "hom" | "woc" | "awoc" | "woc-exact" if strays && has_translucent => {
+                Some("this device takes a sample's depth beside it, before the boxes that translucent objects are tested by")
+            }
+            "woc" | "awoc" | "woc-exact" if strays && woc::tests_boxes(world, options) => {
+                Some("this device takes a sample's depth beside it, before the boxes of costly objects; set its option hybrid=0")
+            }
+            "hzb" | "hom" | "woc" | "awoc" | "woc-exact" => None,
+            _ if strays => Some("this device takes a sample's depth beside it, before the box that it is tested by"),
             _ => None,
         }
     }

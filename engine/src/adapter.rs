@@ -55,6 +55,8 @@ pub struct AdapterInfo {
     pub snap_px: f32,
     /// Numbers of samples that colours and depths of a picture may have, a bit each.
     pub(crate) samples: vk::SampleCountFlags,
+    /// Whether samples lie where Vulkan's table of standard sample locations says.
+    pub standard_samples: bool,
     /// Nanoseconds a timestamp tick; 0 if there are no timestamps.
     pub timestamp_ns: f32,
     /// Bits of a timestamp before it starts again at 0; 0 if there are no timestamps.
@@ -214,6 +216,7 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice, without: &[Str
             & limits.framebuffer_depth_sample_counts
             & limits.sampled_image_color_sample_counts
             & limits.sampled_image_depth_sample_counts,
+        standard_samples: limits.standard_sample_locations != 0,
         timestamp_ns: if has(Extra::Timestamps) { limits.timestamp_period } else { 0.0 },
         timestamp_bits: if has(Extra::Timestamps) { bits } else { 0 },
         cache_key: format!("{cache_key}-{:08x}-{:08x}-{:08x}", core.vendor_id, core.device_id, core.driver_version),

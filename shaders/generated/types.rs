@@ -294,7 +294,7 @@ pub struct CullView {
     pub width_px: u32,
     /// `height_px` in GLSL.
     pub height_px: u32,
-    /// The device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples.
+    /// The device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples, and their stray.
     pub snap_px: f32,
     /// What is smaller on the screen is left out; 0 leaves out nothing.
     pub detail_px: f32,

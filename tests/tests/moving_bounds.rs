@@ -26,17 +26,17 @@ fn file() -> Scene {
     import_bytes(Path::new("moving.glb"), &glb).unwrap()
 }
 
-fn session(gpu: &engine::Gpu, scene: Scene, path: &str, bounds: MovingBounds) -> Session {
+fn session(gpu: &engine::Gpu, scene: Scene, path: &str, bounds: MovingBounds, frames: usize) -> Session {
     let path = Some(path.to_owned());
     let options =
-        SessionOptions { path, whole_path: true, frames: 4, size: [160, 90], bounds, ..SessionOptions::default() };
+        SessionOptions { path, whole_path: true, frames, size: [160, 90], bounds, ..SessionOptions::default() };
     Session::with_scene(gpu, scene, options).unwrap()
 }
 
 fn in_every_way(scene: &Scene, path: &str) {
     let gpu = gpu();
     for mode in LOOSER {
-        let mut session = session(&gpu, scene.clone(), path, mode);
+        let mut session = session(&gpu, scene.clone(), path, mode, 4);
         for method in METHODS {
             assert_none(&faults(&mut session, method, &[]));
         }
@@ -58,22 +58,21 @@ fn what_a_file_moves_is_never_lost() {
     in_every_way(&file(), "rotate");
 }
 
-/// Bounds of time 0 that are never moved, taken for those of all times: what moves out of them is lost.
+/// Bounds of time 0 that are never moved, taken for those of all times: what moves out of them is lost, by whichever method. In twelve frames:
+/// four showed a single lost object, and on a device with a coarser vertex grid, where boxes reach farther, none to most methods.
 #[test]
 fn bounds_that_stay_behind_are_caught() {
     let gpu = gpu();
-    let mut caught = Vec::new();
     let moving = scene("moving-boxes", 0.5);
     // The scene that the world was made of rests, and so its bounds are those of time 0; what is drawn of it moves.
-    let mut rests = session(&gpu, moving.clone(), "rotate", MovingBounds::PerFrame);
+    let mut rests = session(&gpu, moving.clone(), "rotate", MovingBounds::PerFrame, 12);
     let mut still = moving;
     let places = still.motion.dynamic_objects();
     let scenes::Motion::Orbits(orbits) = &mut still.motion else { panic!("boxes move in orbits") };
     orbits.iter_mut().for_each(|orbit| (orbit.radians_per_s, orbit.bob_period_s) = (0.0, 0.0));
     assert!(!places.is_empty());
     rests.world = World::with_bounds(&gpu, &still, culling::Shading::of(&still), MovingBounds::Union).unwrap();
-    caught.extend(faults(&mut rests, "hzb", &[]));
-    assert_caught(&caught, "false negatives");
+    METHODS.iter().for_each(|method| assert_caught(&faults(&mut rests, method, &[]), "false negatives"));
 }
 
 /// Where things are does not depend on how their bounds are had: the truth itself would move with transforms that were not brought.
@@ -84,7 +83,7 @@ fn every_way_shows_the_same_pictures() {
         [(scene("moving-boxes", 0.5), "rotate"), (scene("moving-balloons", 0.01), "walk"), (file(), "rotate")]
     {
         let pictures = |mode| {
-            let mut session = session(&gpu, scene.clone(), path, mode);
+            let mut session = session(&gpu, scene.clone(), path, mode, 4);
             let truth = RunTruth::draw(&mut session, || ()).unwrap();
             let frames = 0..session.frames();
             frames.map(|frame| truth.frame(&mut session, frame).unwrap().images().clone()).collect::<Vec<_>>()

@@ -1,11 +1,12 @@
 //! Pictures of four samples a pixel: what stages read of depth, and that culling stays right at every sample.
 
-use culling::{Method, Setup, View, World};
+use culling::{Entry, Method, Setup, View, World};
 use engine::{Buffer, Frame, KeptSample, Placement, Samples, Target};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use harness::lab::error_of;
 use harness::laws::faults_of;
 use harness::{assert_caught, assert_none, gpu, takes_turn, worlds, Case, Lab, Subject};
+use scenes::{Projection, Topology};
 use sightline::run::samples::SAMPLES;
 use sightline::run::session::{Session, SessionOptions};
 use sightline::run::Contender;
@@ -44,14 +45,18 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A row of walls with slits between them, each much less than a pixel wide and somewhere else on the grid of pixels, and bodies behind the slits.
+/// A row of walls with slits between them, each half a pixel wide and somewhere else on the grid of pixels, and bodies behind the slits: for each slit
+/// one that shows to the first eye, and three that others see.
 fn slits() -> Case {
     let mut maker = worlds::Maker::new("slits");
     let cube = maker.mesh(worlds::cube());
     for slit in 0..40 {
         let x = 0.43 * f64::from(slit) - 8.6;
-        maker.place(cube, worlds::sized(DVec3::new(x, 0.0, -10.0), DVec3::new(0.21, 4.0, 0.05)));
-        maker.place(cube, worlds::sized(DVec3::new(1.4 * (x + 0.215), 0.0, -16.0), DVec3::new(0.12, 1.0, 0.05)));
+        maker.place(cube, worlds::sized(DVec3::new(x, 0.0, -10.0), DVec3::new(0.37, 4.0, 0.05)));
+        for aside in [1.2, 1.4, 1.6, 1.8] {
+            let at = DVec3::new(aside * (x + 0.215), 0.0, -16.0);
+            maker.place(cube, worlds::sized(at, DVec3::new(0.12, 1.0, 0.05)));
+        }
     }
     Case::new(
         "slits",
@@ -78,6 +83,10 @@ fn keeping(setup: &Setup<'_>, kept: KeptSample) -> culling::Result<Box<dyn Metho
     Ok(Box::new(Kept { method, kept }))
 }
 
+fn needs_one_sample(entry: &Entry, lab: &Lab) -> Option<&'static str> {
+    entry.needs_one_sample(&lab.world, &entry.default_options(), lab.targets.stray_px())
+}
+
 #[test]
 fn no_visible_sample_is_culled() {
     let gpu = gpu();
@@ -90,7 +99,7 @@ fn no_visible_sample_is_culled() {
                 continue;
             }
             let entry = culling::find(id).unwrap();
-            if entry.needs_one_sample(&lab.world).is_none() {
+            if needs_one_sample(entry, &lab).is_none() {
                 faults.extend(no_visible_sample_is_lost(&mut lab, &Subject::named(id), case));
             }
         }
@@ -177,16 +186,99 @@ fn what_needs_one_sample_says_so() {
     let gpu = gpu();
     let case = worlds::walled(3);
     let lab = Lab::new(&gpu, &case);
-    let refused = culling::METHODS.iter().filter(|entry| entry.needs_one_sample(&lab.world).is_some());
-    assert_eq!(refused.map(|entry| entry.id).collect::<Vec<_>>(), ["hzb-iterative", "eovc", "auto"]);
+    let refusal =
+        |entry: &Entry, world: &World, stray_px| entry.needs_one_sample(world, &entry.default_options(), stray_px);
+    let refused = |stray_px| {
+        let entries = culling::METHODS.iter().filter(|entry| refusal(entry, &lab.world, stray_px).is_some());
+        entries.map(|entry| entry.id).collect::<Vec<_>>()
+    };
+    assert_eq!(refused(0.0), ["hzb-iterative", "eovc", "auto"]);
+    let drawing_boxes = ["roc", "roc-iterative", "query-wait", "query-lag", "chc", "chc++", "nohc"];
+    let astray = refused(0.75);
+    assert!(
+        refused(0.0).iter().chain(&drawing_boxes).all(|id| astray.contains(id)) && astray.len() == 10,
+        "{astray:?}"
+    );
     let moving = Session::on(&gpu, SessionOptions { scene: "moving-boxes".into(), ..small() }).unwrap();
-    let reason = |id: &str, session: &Session| culling::find(id).unwrap().needs_one_sample(&session.world);
+    let reason = |id: &str, session: &Session| refusal(culling::find(id).unwrap(), &session.world, 0.0);
     assert!(reason("woc", &moving).is_some_and(|why| why.contains("item buffer")) && reason("hzb", &moving).is_none());
     let options = SessionOptions { scene: "boxes".into(), samples: SAMPLES, ..small() };
     let session = Session::on(&gpu, options).unwrap();
     let entry = culling::find("eovc").unwrap();
     let error = Contender::new(&session, entry, entry.default_options(), &None).err().unwrap().to_string();
     assert!(error.contains("--samples 4: method 'eovc' cannot: it casts one ray"), "{error}");
+}
+
+/// On a device that takes depths beside samples, boxes of costly objects and of translucent ones are drawn too.
+#[test]
+fn whoever_draws_boxes_beside_a_map_is_refused_where_depths_stray() {
+    let gpu = gpu();
+    let glass = Lab::new(&gpu, &worlds::materials::plain_glass());
+    let walled = Lab::new(&gpu, &worlds::walled(3));
+    for (id, set, lab, cause) in [
+        ("hom", "", &glass, "translucent objects"),
+        ("woc-exact", "11", &walled, "option hybrid=0"),
+        ("woc-exact", "", &walled, ""),
+        ("frustum", "", &glass, ""),
+        ("ref", "", &glass, ""),
+    ] {
+        let entry = culling::find(id).unwrap();
+        let mut options = entry.default_options();
+        if !set.is_empty() {
+            options.set("hybrid-triangles", set).unwrap();
+        }
+        let astray = entry.needs_one_sample(&lab.world, &options, 0.75);
+        assert_eq!(astray.is_some(), !cause.is_empty(), "{id}: {astray:?}");
+        assert!(astray.is_none_or(|why| why.contains(cause)), "{id}: {astray:?}");
+        assert_eq!(entry.needs_one_sample(&lab.world, &options, 0.0), None, "{id}");
+    }
+}
+
+/// Where samples are is found by edges that move over a pixel in steps of the vertex grid, and where their depths are by leaning squares: what is
+/// between the two is the stray, on any device.
+#[test]
+fn the_stray_of_depths_is_told() {
+    let gpu = gpu();
+    let step = f64::from(gpu.snap_px()).max(1.0 / 64.0);
+    let mut places = [[[0.0; 2]; 2]; SAMPLES as usize];
+    let level = leaning(DVec2::ZERO);
+    let mut lab = Lab::with_samples(&gpu, &level, SAMPLES);
+    for (axis, to) in [DVec2::X, DVec2::NEG_Y].into_iter().enumerate() {
+        for taken in 0..(1.0 / step) as u32 {
+            // The square's left, or upper, edge is so far into the pixel.
+            let into = step * (f64::from(taken) + 0.5);
+            let depths = depths_of_pixel(&mut lab, to * (-20.0 - into));
+            let covered = places.iter_mut().zip(depths).filter(|(_, depth)| *depth > 0.0);
+            covered.for_each(|(place, _)| place[0][axis] = into);
+        }
+        let mut lab = Lab::with_samples(&gpu, &leaning(to), SAMPLES);
+        let depths = depths_of_pixel(&mut lab, DVec2::ZERO);
+        places.iter_mut().zip(depths).for_each(|(place, depth)| place[1][axis] = 100.0 * (f64::from(depth) - 0.5));
+    }
+    let beside = places.map(|[covered, depth]| DVec2::from(depth).distance(covered.into()));
+    let most = beside.into_iter().fold(0.0, f64::max);
+    let told = f64::from(lab.targets.stray_px());
+    assert!((most - told).abs() < 2.0 * step, "{places:?}: {most} pixels, not {told}");
+    println!("depths are taken {told} pixel beside their samples at most");
+}
+
+/// A square of 40 pixels a side in the middle of 64, nearer by a unit a pixel that way.
+fn leaning(to: DVec2) -> Case {
+    let mut maker = worlds::Maker::new("leaning");
+    let corners = [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]].map(DVec2::from);
+    let corners = corners.map(|at| at.extend(at.dot(to)).as_vec3());
+    let mesh = maker.mesh(worlds::mesh("square", Topology::Triangles, corners.to_vec(), vec![0, 1, 2, 0, 2, 3]));
+    maker.place(mesh, worlds::sized(DVec3::ZERO, DVec3::ONE));
+    Case::new("leaning", maker.scene, Vec::new()).sized([64, 64])
+}
+
+/// Depths of the samples of the pixel right below the picture's middle, a unit a pixel and 100 from near to far.
+fn depths_of_pixel(lab: &mut Lab, eye: DVec2) -> [f32; SAMPLES as usize] {
+    let eye = eye.extend(50.0);
+    let parallel = Projection::Orthographic { half_height: 32.0, near: 0.0, far: 100.0 };
+    let truth = lab.truth(&worlds::shot(eye, eye - DVec3::Z, parallel));
+    let width = truth.images().width as usize;
+    std::array::from_fn(|sample| truth.images().depth[(64 + (sample >> 1)) * width + 64 + (sample & 1)])
 }
 
 fn small() -> SessionOptions {

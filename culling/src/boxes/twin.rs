@@ -24,7 +24,8 @@ pub fn growth(clip: &ClipBox, view: &CullView, flags: u32) -> f32 {
     pad + depth_growth(clip, view, w_max)
 }
 
-fn depth_growth(clip: &ClipBox, view: &CullView, w_max: f32) -> f32 {
+/// How far a box must reach out for the rounding of its own faces' depth. Twin of `depth_growth`.
+pub fn depth_growth(clip: &ClipBox, view: &CullView, w_max: f32) -> f32 {
     let spread = clip.axes.iter().map(|axis| axis.abs()).sum::<Vec4>() + clip.error;
     let nearest = ((clip.centre.z + spread.z) / (clip.centre.w - spread.w).max(1.0e-30)).min(1.0);
     let farthest = ((clip.centre.z - spread.z) / w_max).max(0.0);

@@ -7,8 +7,8 @@
 //! thinner than a pixel's error), everything in the view volume is drawn.
 
 pub mod sight;
+mod walls;
 
-use crate::boxes::twin::growth;
 use crate::frustum::twin::{clip_from_bounds, left_out};
 use crate::pack::DrawList;
 use crate::world::{gpu_bounds, Still};
@@ -18,6 +18,7 @@ use glam::DAffine3;
 use scenes::{Aabb, Cells};
 use shaders::types::{Bounds, OBJECT_ALWAYS_KEPT, OBJECT_WIDE_RASTER};
 use sight::{start, Rectangle, Sight, Start};
+use walls::is_closed;
 
 /// What small things are, and whether a still frame is looked at again.
 pub const OPTIONS: &[OptionInfo] = &[crate::world::SKIP_OPTION, crate::world::DETAIL_OPTION];
@@ -146,17 +147,6 @@ pub fn seen(cells: &Cells, view: &View) -> Pictures {
     } else {
         Err("walls are thinner than what a pixel may be off")
     }
-}
-
-/// True if a cell's walls are thick enough: a pixel shows what is up to a grid step beside the ray through its middle, and depths are rounded. A
-/// ball around each point of a face, as large as `include/box.glsl` derives, must lie in what closes the face: then what is beyond
-/// is behind it in every pixel, as it is on every ray.
-fn is_closed(cells: &Cells, cell: usize, view: &View) -> bool {
-    let Aabb { min, max } = cells.cells[cell].bounds;
-    let bounds = gpu_bounds(&Aabb { min: min - cells.reach, max: max + cells.reach }, &DAffine3::IDENTITY, 0);
-    let view = view.cull();
-    bounds.flags & OBJECT_ALWAYS_KEPT == 0
-        && f64::from(growth(&clip_from_bounds(&bounds, &view), &view, 0)) <= cells.half_wall
 }
 
 /// True if an object is in view, and its picture reaches into a rectangle of it.

@@ -16,7 +16,7 @@ use crate::farthest::hom;
 use crate::pack::DrawList;
 use crate::warp::Settings;
 use crate::world::Still;
-use crate::{Method, OptionInfo, Result, Setup, TestedBoxes, View, Work, World};
+use crate::{Method, OptionInfo, Options, Result, Setup, TestedBoxes, View, Work, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use hybrid::Hybrid;
 use map::{OcclusionMap, Recipe};
@@ -39,6 +39,17 @@ enum Kind {
     Approximate,
     /// Holes are far, and what was culled is tested again against the depth of what was drawn.
     Exact,
+}
+
+/// The costly objects, whose boxes are tested too.
+fn costly(world: &World, options: &Options) -> Vec<u32> {
+    let number = |option: OptionInfo| options.number(option.name);
+    hybrid::candidates(world, number(options::HYBRID), number(options::HYBRID_TRIANGLES))
+}
+
+/// True if there are any.
+pub(crate) fn tests_boxes(world: &World, options: &Options) -> bool {
+    !costly(world, options).is_empty()
 }
 
 /// After the camera stops: the frame it stopped in may have missed objects. The next is tested against its depth, in which
@@ -185,8 +196,7 @@ impl Woc {
         let close = setup.options.flag(options::CLOSE.name);
         let fill = kind == Kind::Approximate;
         let settings = Settings { fill, fastest, footprint, ..Settings::of(setup.options) };
-        let number = |option: OptionInfo| setup.options.number(option.name);
-        let costly = hybrid::candidates(world, number(options::HYBRID), number(options::HYBRID_TRIANGLES));
+        let costly = costly(world, setup.options);
         let hybrid = if costly.is_empty() { None } else { Some(Hybrid::new(gpu, world, &costly)?) };
         let list = |name: &str| DrawList::styled(gpu, name, world, options::commands(setup.options));
         Ok(Woc {

@@ -22,7 +22,7 @@ pub struct View {
 
 impl View {
     /// The view of a path's shot in a picture of `size`; `snap_px` is the device's vertex grid, and
-    /// [`shaders::types::SAMPLE_REACH_PX`] more where pixels have several samples.
+    /// [`shaders::types::SAMPLE_REACH_PX`] more where pixels have several samples, and more where the device takes their depths beside them.
     pub fn new(shot: &Shot, size: [u32; 2], frame: usize, snap_px: f32) -> Self {
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         let view_from_relative = DMat4::from_quat(shot.pose.rotation.conjugate());

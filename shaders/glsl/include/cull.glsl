@@ -16,7 +16,8 @@ const float CLIP_ERROR = 32.0 / 16777216.0;
 // Invocations that stride over a draw list in woc/find_rapid.
 const uint RAPID_INVOCATIONS = 1024u;
 
-// The vertex grid of a view, whose snap_px may have the reach of samples in it. A grid has 1/16 pixel at most.
+// The vertex grid of a view, whose snap_px may have the reach of samples in it, and how far beside a sample the device takes its depth if it does.
+// A grid has 1/16 pixel at most.
 float grid_px(CullView view) {
     return view.snap_px >= SAMPLE_REACH_PX ? view.snap_px - SAMPLE_REACH_PX : view.snap_px;
 }

@@ -14,7 +14,8 @@
 // border alone). A line's pixels lie up to a pixel past its ends, and its depth goes on with its slope: at most
 // (1 + 2 snap_px) / l for a line l pixels long (measured on lavapipe: 0.5 / l). DEPTH_SLACK_PER_PIXEL covers h and l >= 1/8
 // pixel. Where pixels have several samples, each lies less than half a pixel from the centre: the rectangle grows by SAMPLE_REACH_PX, which the
-// view has in snap_px; depths are those of the plane at the sample, and no farther off it than a centre's. Thinner slivers and shorter lines that span most of their box's depth range are outside the documented raster
+// view has in snap_px; depths are those of the plane at the sample, and no farther off it than a centre's. A device with the fault of taking them s pixels beside
+// it (SwiftShader: 0.75) is off by s / h times the range more, and the view has s in snap_px too: 12 (snap + s) is no less than (1.42 snap + s) / h. Thinner slivers and shorter lines that span most of their box's depth range are outside the documented raster
 // conditions; those of a dense mesh are not, as they span little of it.
 #ifndef FOOTPRINT_GLSL
 #define FOOTPRINT_GLSL

@@ -107,7 +107,7 @@ struct CullView {
     vec3 camera_low;
     uint width_px;
     uint height_px;
-    float snap_px;      // the device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples
+    float snap_px;      // the device rounds vertex positions to this grid, pixels; 0.5 more where pixels have several samples, and their stray
     float detail_px;    // what is smaller on the screen is left out; 0 leaves out nothing
 };
 

@@ -5,6 +5,7 @@ pub mod capture;
 pub mod methods;
 pub mod samples;
 pub mod session;
+mod stray;
 pub mod sweep;
 pub mod targets;
 pub mod truth;
@@ -69,7 +70,8 @@ impl Contender {
         visible: &Option<Arc<VisibleSets>>,
     ) -> Result<Self> {
         let samples = session.targets.samples();
-        if let (2.., Some(why)) = (samples, entry.needs_one_sample(&session.world)) {
+        let refused = || entry.needs_one_sample(&session.world, &options, session.targets.stray_px());
+        if let (2.., Some(why)) = (samples, refused()) {
             bail!("--samples {samples}: method '{}' cannot: {why}", options.label());
         }
         let before = session.gpu.memory_mib();

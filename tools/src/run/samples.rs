@@ -47,6 +47,12 @@ impl Sampled {
         })
     }
 
+    /// Depths of samples as they are, reversed, in a picture twice as wide and high.
+    pub(super) fn read_depths(&self) -> Result<Vec<f32>> {
+        let depth = self.spread(&self.depth, true)?;
+        Ok(depth.into_iter().map(f32::from_bits).map(|kept| self.reversed(kept)).collect())
+    }
+
     pub(super) fn count(&self) -> u32 {
         self.count
     }
@@ -65,7 +71,7 @@ impl Sampled {
     /// What a frame left, a sample each, in pictures twice as wide and high; drawing its lists once more, in their order, says whose each is.
     pub(super) fn read(&self, drawn: &Target, world: &World, view: &View, report: &FrameReport) -> Result<FrameImages> {
         let colour = self.spread(&self.colour, false)?;
-        let depth = self.spread(&self.depth, true)?;
+        let depth = self.read_depths()?;
         let samples = Samples { colour: Some(self.owners.view()), ..self.drawn() };
         let colour_of_pixels = drawn.colour.map(|(image, _)| (image, Format::Owner));
         let target = Target { colour: colour_of_pixels, item: None, samples: Some(samples), ..*drawn };
@@ -77,7 +83,7 @@ impl Sampled {
             width: 2 * self.size[0],
             height: 2 * self.size[1],
             colour: bytemuck::cast_vec(colour.into_iter().map(u32::to_ne_bytes).collect()),
-            depth: depth.into_iter().map(f32::from_bits).map(|kept| self.reversed(kept)).collect(),
+            depth,
             items: self.spread(&self.owners, false)?,
             seen_through: Vec::new(),
         })

@@ -1,6 +1,7 @@
 //! The images that frames are drawn to, and how they are read back.
 
 use super::samples::Sampled;
+use super::stray::stray_px;
 use crate::measures::metrics::FrameImages;
 use anyhow::Result;
 use culling::{View, World};
@@ -15,6 +16,8 @@ pub struct Targets {
     count: Option<Image>,
     /// None: pixels have one sample.
     sampled: Option<Sampled>,
+    /// How far beside a sample the device takes its depth.
+    stray_px: f32,
 }
 
 impl Targets {
@@ -26,6 +29,7 @@ impl Targets {
             depth: Image::new(gpu, "target.depth", Format::Depth, size)?,
             count: None,
             sampled: None,
+            stray_px: 0.0,
         })
     }
 
@@ -35,13 +39,23 @@ impl Targets {
     /// # Errors
     /// A device, or a format of its depth, that has not so many.
     pub fn with_samples(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self> {
-        let sampled = if samples > 1 { Some(Sampled::new(gpu, size, samples)?) } else { None };
-        Ok(Targets { sampled, ..Self::new(gpu, size)? })
+        let targets = Self::new(gpu, size)?;
+        if samples == 1 {
+            return Ok(targets);
+        }
+        let sampled = Some(Sampled::new(gpu, size, samples)?);
+        Ok(Targets { sampled, stray_px: stray_px(gpu)?, ..targets })
     }
 
-    /// How far from a pixel's centre what is drawn there may be found: the device's vertex grid, and the reach of samples.
+    /// How far from a pixel's centre what is drawn there may be found: the device's vertex grid, and where pixels have several samples their reach
+    /// and how far beside them their depths are taken.
     pub fn reach_px(&self, gpu: &Gpu) -> f32 {
-        gpu.snap_px() + if self.sampled.is_some() { SAMPLE_REACH_PX } else { 0.0 }
+        gpu.snap_px() + if self.sampled.is_some() { SAMPLE_REACH_PX + self.stray_px } else { 0.0 }
+    }
+
+    /// How far beside a sample the device takes its depth, in pixels: 0, but for faults of devices; 0 where pixels have one sample.
+    pub fn stray_px(&self) -> f32 {
+        self.stray_px
     }
 
     /// Samples a pixel.

@@ -55,11 +55,13 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
 fn without_refusing(methods: &mut Chosen, session: &Session) -> Vec<String> {
     let mut left_out = Vec::new();
     if session.targets.samples() > 1 {
-        methods.retain(|(entry, _)| match entry.needs_one_sample(&session.world) {
-            None => true,
-            Some(why) => {
-                left_out.push(format!("left out: method '{}' needs one sample a pixel: {why}", entry.id));
-                false
+        methods.retain(|(entry, options)| {
+            match entry.needs_one_sample(&session.world, options, session.targets.stray_px()) {
+                None => true,
+                Some(why) => {
+                    left_out.push(format!("left out: method '{}' needs one sample a pixel: {why}", entry.id));
+                    false
+                }
             }
         });
     }

@@ -2,7 +2,9 @@
 
 use super::say;
 use crate::cli::DeviceArgs;
+use crate::run::samples::SAMPLES;
 use crate::run::session::cache_folder;
+use crate::run::targets::Targets;
 use anyhow::Result;
 use engine::{adapters, device_lines, Format, Gpu, TimerMode};
 
@@ -36,6 +38,7 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
         ("largest image", format!("{0} x {0} pixels", info.max_image_px)),
         ("largest buffer", format!("{} MiB for a stage", info.max_storage_bytes >> 20)),
         ("vertex grid", format!("1/{} pixel", (1.0 / info.snap_px).round())),
+        ("samples", samples(&gpu)),
         (
             "formats",
             [Format::Colour, Format::Item, Format::Depth, Format::Heat].map(|it| it.name(gpu.depth())).join(", "),
@@ -49,4 +52,16 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
         say(&format!("{:<15} {}: {}", if feature.present { "has" } else { "lacks" }, feature.name, feature.why))?;
     }
     say("methods         all methods run on this device")
+}
+
+/// What `--samples` can be, and which methods need 1 because of how the device takes depths.
+fn samples(gpu: &Gpu) -> String {
+    match Targets::with_samples(gpu, [8; 2], SAMPLES) {
+        Err(error) => format!("1 a pixel ({error:#})"),
+        Ok(targets) if targets.stray_px() > 0.0 => format!(
+            "1 or {SAMPLES} a pixel, whose depths are taken up to {:.2} pixel beside them: methods that draw boxes need 1",
+            targets.stray_px()
+        ),
+        Ok(_) => format!("1 or {SAMPLES} a pixel"),
+    }
 }
