@@ -145,7 +145,7 @@ pub(crate) const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 pub(crate) struct Reach {
     farthest: [f64; 27],
     /// Largest magnitude of each coordinate.
-    largest: [f64; 3],
+    pub(crate) largest: [f64; 3],
 }
 
 fn direction_index(direction: [i32; 3]) -> usize {
@@ -199,11 +199,6 @@ impl Reach {
     pub(crate) fn most_padding(&self, stretch: f64) -> f64 {
         let largest = DVec3::from_array(self.largest);
         TRANSFORM_ERROR * stretch * largest.length() + SMALLEST * (3.0 * stretch + largest.element_sum() + 6.0)
-    }
-
-    /// Largest magnitude of each coordinate.
-    pub(crate) fn largest(&self) -> DVec3 {
-        DVec3::from_array(self.largest)
     }
 
     /// Reaches as far as both.

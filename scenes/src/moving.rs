@@ -225,7 +225,7 @@ impl<'a> Shape<'a> {
         let from = if self.in_place() { self.middle } else { DVec3::ZERO };
         let mut carried = whole.begin(from, self.in_place());
         carried.up(&whole.chain, span, self.in_place());
-        carried.into_world(whole, self.in_place());
+        carried.up_to_world(whole, self.in_place());
         let rounding = ROUNDING * (whole.chain.len() + 2) as f64 * carried.farthest;
         let place = DAffine3 { translation: carried.place.translation - carried.place.matrix3 * from, ..carried.place };
         let bounds = self.widened(&place, carried.off + rounding, carried.longer);

@@ -15,7 +15,7 @@ use glam::DAffine3;
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked::Valid;
 use gltf::json::{Index, Skin as FileSkin};
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 /// Joints and weights of a vertex.
 pub(super) type Influence = ([u32; JOINTS_A_VERTEX], [f32; JOINTS_A_VERTEX]);
@@ -50,10 +50,10 @@ impl Skeletons {
             let (Some(index), Some(_)) = (of_file.skin, of_file.mesh) else { continue };
             let skin =
                 element(&document.root, index, "skin").map_err(|fault| fault.within(|| node_label(document, node)))?;
-            if !skeletons.contains_key(&index.value()) {
+            if let Entry::Vacant(free) = skeletons.entry(index.value()) {
                 let place = || label("skin", index.value(), skin.name.as_deref());
                 let skeleton = skeleton(document, accessors, tree, skin).map_err(|fault| fault.within(place))?;
-                skeletons.insert(index.value(), skeleton);
+                free.insert(skeleton);
             }
         }
         Ok(Skeletons(skeletons))

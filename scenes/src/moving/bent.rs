@@ -70,6 +70,11 @@ fn place_error(size: f64, longer: f64) -> f64 {
     TRANSFORM_ERROR * longer * size + SMALLEST * (3.0 * longer + 3.0 * size + 6.0)
 }
 
+/// Largest magnitude of each coordinate.
+fn largest(reach: &Reach) -> DVec3 {
+    DVec3::from_array(reach.largest)
+}
+
 impl Body {
     /// Its bounds where it is, with its joints where they are.
     pub(super) fn bounds(&self, world_from_object: &DAffine3, places: &[DAffine3]) -> Aabb {
@@ -98,11 +103,11 @@ impl Body {
 /// The bounds of what a joint carries, in world space.
 fn part_bounds(reach: &Reach, world_from_object: &DAffine3, object_from_rest: &DAffine3) -> Aabb {
     let rows = object_from_rest.matrix3.transpose();
-    let sum = |row: DVec3| row.abs().dot(reach.largest());
+    let sum = |row: DVec3| row.abs().dot(largest(reach));
     let size = DVec3::new(sum(rows.x_axis), sum(rows.y_axis), sum(rows.z_axis)) + object_from_rest.translation.abs();
-    let (longer, largest) =
-        (rows.x_axis.length() + rows.y_axis.length() + rows.z_axis.length(), reach.largest().max_element());
-    let error = size.map(|size| bend_error(size, longer, largest));
+    let (longer, most) =
+        (rows.x_axis.length() + rows.y_axis.length() + rows.z_axis.length(), largest(reach).max_element());
+    let error = size.map(|size| bend_error(size, longer, most));
     let place = *world_from_object * *object_from_rest;
     let world_rows = world_from_object.matrix3.transpose();
     reach.padded(&place, |axis, _| {
@@ -121,9 +126,9 @@ fn swept(part: &Hung<'_>, span: Span, turned: bool) -> Swept {
     carried.up(below, span, false);
     let (size, longer) = (carried.farthest, std::mem::replace(&mut carried.longer, 1.0));
     carried.up(above, span, turned);
-    carried.into_world(part, turned);
+    carried.up_to_world(part, turned);
     // An error along each of three axes.
-    let error = 3f64.sqrt() * bend_error(size, longer, part.reach.largest().max_element());
+    let error = 3f64.sqrt() * bend_error(size, longer, largest(part.reach).max_element());
     let rounding = ROUNDING * (part.chain.len() + 2) as f64 * carried.farthest;
     let by = carried.off + rounding + carried.longer * error + place_error(size + error, carried.longer);
     Swept { bounds: part.reach.placed(&carried.place).widened(DVec3::splat(by)), farthest: carried.farthest + rounding }
@@ -140,7 +145,7 @@ pub(crate) fn bent_always(nodes: &NodeAnimation, skin: &Skin, rest: &[RestVertex
         let in_object = |span: Span| {
             let mut carried = part.begin(DVec3::ZERO, false);
             carried.up(&below, span, false);
-            let error = bend_error(carried.farthest, carried.longer, part.reach.largest().max_element());
+            let error = bend_error(carried.farthest, carried.longer, largest(part.reach).max_element());
             let rounding = ROUNDING * (below.len() + 2) as f64 * carried.farthest;
             part.reach.placed(&carried.place).widened(DVec3::splat(carried.off + rounding + error))
         };

@@ -70,7 +70,7 @@ impl Carried {
     }
 
     /// From the root to the world.
-    pub(super) fn into_world(&mut self, hung: &Hung<'_>, turned: bool) {
+    pub(super) fn up_to_world(&mut self, hung: &Hung<'_>, turned: bool) {
         let world_from_root = hung.world_from_root();
         let fixed = stretch(&world_from_root.matrix3);
         (self.off, self.longer) = (fixed * self.off, fixed * self.longer);
