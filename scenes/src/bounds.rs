@@ -116,11 +116,9 @@ impl WorldBounds {
         self.reaches[mesh as usize].transformed(world_from_object)
     }
 
-    /// How much wider bounds can be for rounding under any transform that makes no vector more than `stretch` times as long: what a row of
-    /// it times the mesh's largest coordinates is, is at most the product of their lengths.
-    pub(crate) fn most_padding(&self, mesh: u32, stretch: f64) -> f64 {
-        let largest = DVec3::from_array(self.reaches[mesh as usize].largest);
-        TRANSFORM_ERROR * stretch * largest.length() + SMALLEST * (3.0 * stretch + largest.element_sum() + 6.0)
+    /// How far a mesh reaches.
+    pub(crate) fn reach(&self, mesh: u32) -> &Reach {
+        &self.reaches[mesh as usize]
     }
 
     /// The box of a mesh in object space; the point at its origin if it has no vertices.
@@ -137,17 +135,17 @@ impl WorldBounds {
 /// Each term takes at most four roundings to f32, each by a factor within 1 +- u, u = 2^-24: of M on upload, of the
 /// product, and of two sums. (1 + u)^4 - 1 < 4u (1 + 2^-16), and the excess over 4u also covers the few roundings of this
 /// file in f64 (below 2^-49 together). A fused multiply-add rounds less often.
-const TRANSFORM_ERROR: f64 = 4.0 / 16_777_216.0 * (1.0 + 1.0 / 65_536.0);
+pub(crate) const TRANSFORM_ERROR: f64 = 4.0 / 16_777_216.0 * (1.0 + 1.0 / 65_536.0);
 
 /// Devices may flush numbers below this to zero: of M, of p, each product, and both sums.
-const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
+pub(crate) const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
 /// How far a mesh reaches in each of the 26 directions, by [`direction_index`]; entry 13 is unused.
 #[derive(Clone, Debug)]
 pub(crate) struct Reach {
     farthest: [f64; 27],
     /// Largest magnitude of each coordinate.
-    largest: [f64; 3],
+    pub(crate) largest: [f64; 3],
 }
 
 fn direction_index(direction: [i32; 3]) -> usize {
@@ -170,7 +168,12 @@ impl Reach {
     fn of_points(points: impl Iterator<Item = DVec3>) -> Self {
         let mut reach = Self::NOTHING;
         points.for_each(|point| reach.take(point));
-        Reach { largest: reach.largest_coordinates(), ..reach }
+        reach.with_largest()
+    }
+
+    /// The same, once all points are taken.
+    pub(crate) fn with_largest(self) -> Self {
+        Reach { largest: self.largest_coordinates(), ..self }
     }
 
     /// Reaches as far as this point too.
@@ -189,6 +192,13 @@ impl Reach {
                 farthest[26 - index] = -along;
             }
         }
+    }
+
+    /// How much wider bounds can be for rounding under any transform that makes no vector more than `stretch` times as long: what a row of
+    /// it times the mesh's largest coordinates is, is at most the product of their lengths.
+    pub(crate) fn most_padding(&self, stretch: f64) -> f64 {
+        let largest = DVec3::from_array(self.largest);
+        TRANSFORM_ERROR * stretch * largest.length() + SMALLEST * (3.0 * stretch + largest.element_sum() + 6.0)
     }
 
     /// Reaches as far as both.
@@ -235,12 +245,22 @@ impl Reach {
     }
 
     pub(crate) fn transformed(&self, world_from_object: &DAffine3) -> Aabb {
+        self.padded(world_from_object, |axis, row| self.padding(row, world_from_object.translation[axis]))
+    }
+
+    /// The box of the same without room for rounding.
+    pub(crate) fn placed(&self, world_from_object: &DAffine3) -> Aabb {
+        self.padded(world_from_object, |_, _| 0.0)
+    }
+
+    /// The box under a transform, with so much room along each world axis.
+    pub(crate) fn padded(&self, world_from_object: &DAffine3, pad: impl Fn(usize, [f64; 3]) -> f64) -> Aabb {
         let columns = world_from_object.matrix3;
         let translation = world_from_object.translation.to_array();
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let row = [columns.x_axis[axis], columns.y_axis[axis], columns.z_axis[axis]];
-            let pad = self.padding(row, translation[axis]);
+            let pad = pad(axis, row);
             min[axis] = translation[axis] + (-self.along(row.map(|weight| -weight)) - pad);
             max[axis] = translation[axis] + (self.along(row) + pad);
         }

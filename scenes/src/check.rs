@@ -74,6 +74,10 @@ impl Scene {
             let fault = format!("it is animated, but the scene has {} objects", self.objects.len());
             return Err(SceneError::BadObject { object: format!("number {stray}"), fault });
         }
+        if let Some((object, fault)) = self.skin_fault() {
+            let name = self.objects.get(object as usize).map(|object| object.name.clone());
+            return Err(SceneError::BadObject { object: name.unwrap_or_else(|| format!("number {object}")), fault });
+        }
         let Motion::Orbits(orbits) = &self.motion else { return Ok(()) };
         for orbit in orbits {
             let numbers = [orbit.radians_per_s, orbit.bob_period_s];

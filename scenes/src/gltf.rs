@@ -2,8 +2,8 @@
 //!
 //! Read are: meshes of every mode and vertex format (KHR_mesh_quantization included), instances (EXT_mesh_gpu_instancing), node
 //! trees in `f64`, node animation, cameras, and of materials the base colour
-//! with its texture (PNG or JPEG; KHR_texture_transform), vertex colours, the alpha mode and its cutoff, and which sides show. Skins are drawn as their mesh lies
-//! in the file, morph targets at their default weights. Lights and other textures are not read.
+//! with its texture (PNG or JPEG; KHR_texture_transform), vertex colours, the alpha mode and its cutoff, and which sides show. Skins bend their meshes, by
+//! four joints a vertex. Morph targets stay at their default weights. Lights and other textures are not read.
 //!
 //! Whatever is in the file, [`import`] returns: it does not panic, does not recurse, and allocates in proportion to the file.
 
@@ -19,6 +19,7 @@ mod mesh;
 mod motion;
 mod normals;
 mod objects;
+mod skins;
 mod tree;
 
 use crate::animation::{Attachment, Motion, NodeAnimation};
@@ -27,11 +28,13 @@ use crate::error::SceneError;
 use crate::model::Scene;
 use accessor::Accessors;
 use document::Document;
-use fault::{broken, element, label, Fault, Outcome};
+use fault::{broken, Fault, Outcome};
 use gltf::json::animation::Property::MorphTargetWeights;
+use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked::Valid;
 use motion::Moving;
 use objects::Objects;
+use skins::Skeletons;
 use std::path::Path;
 use tree::{node_label, Tree};
 
@@ -63,12 +66,12 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let parts = container::split(file)?;
     let document = document::parse(&parts.json)?;
     let tree = Tree::new(&document)?;
-    check_skins(&document, &tree)?;
     let buffers = buffers::load(&document.root, parts.binary.as_deref(), folder)?;
     let accessors = Accessors::new(&document, &buffers);
     let moving = Moving::read(&document, &accessors, &tree)?;
+    let skeletons = Skeletons::read(&document, &accessors, &tree)?;
 
-    let mut objects = Objects::new(&document, &accessors, folder);
+    let mut objects = Objects::new(&document, &accessors, &skeletons, folder);
     let mut cameras = Vec::new();
     // In order of index, whatever the tree looks like.
     let mut nodes = tree.order.clone();
@@ -86,28 +89,46 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let (meshes, textures) = (objects.meshes, objects.materials.textures);
     let mut scene = Scene { name, meshes, objects: objects.objects, textures, cameras, ..Scene::default() };
     scene.cells = cells::read(&document)?;
-    set_in_motion(&mut scene, &document, &tree, moving, &objects.placements, nodes_of_cameras)?;
+    let moving_skins = skeletons.moving(&document, &moving);
+    let mut moves: Vec<bool> = objects.placements.iter().map(|placed| moving.moves(placed.node)).collect();
+    objects.bent.iter().for_each(|bent| moves[bent.object as usize] |= moving_skins[bent.skin]);
+    let carried = Carried { placements: &objects.placements, moves, bones: skeletons.bones(&tree, &moving) };
+    let places = set_in_motion(&mut scene, &document, &tree, moving, &carried, nodes_of_cameras)?;
+    skeletons.bend(&mut scene, &tree, (&moving_skins, &places), objects.bent)?;
     check_cameras(&scene.cameras)?;
     scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;
     Ok(scene)
 }
 
-/// Hangs objects and cameras on the animated nodes and puts them where they are at time 0.
+/// What nodes carry.
+struct Carried<'a> {
+    /// By object.
+    placements: &'a [objects::Placement],
+    moves: Vec<bool>,
+    /// Nodes of skins that move.
+    bones: Vec<usize>,
+}
+
+/// Hangs objects and cameras on the animated nodes and puts them where they are at time 0. Gives the place of each of the file's nodes among the animated ones.
 fn set_in_motion(
     scene: &mut Scene,
     document: &Document,
     tree: &Tree,
     moving: Moving,
-    placements: &[objects::Placement],
+    objects: &Carried<'_>,
     nodes_of_cameras: Vec<usize>,
-) -> Outcome<()> {
-    let carriers = placements.iter().map(|placement| placement.node).chain(nodes_of_cameras.iter().copied());
-    let carriers: Vec<usize> = carriers.filter(|&node| moving.moves(node)).collect();
+) -> Outcome<Vec<Option<usize>>> {
+    let carriers =
+        objects.placements.iter().zip(&objects.moves).filter(|(_, moves)| **moves).map(|(placed, _)| placed.node);
+    let moves: Vec<bool> = nodes_of_cameras.iter().map(|&node| moving.moves(node)).collect();
+    let cameras = nodes_of_cameras.iter().copied().zip(&moves).filter(|(_, moves)| **moves).map(|(node, _)| node);
+    let carriers: Vec<usize> = carriers.chain(cameras).collect();
     if carriers.is_empty() {
-        return Ok(());
+        return Ok(vec![None; document.root.nodes.len()]);
     }
-    let (nodes, places) = moving.into_nodes(document, tree, &carriers)?;
-    let attachments = placements.iter().enumerate().filter_map(|(object, placement)| {
+    let (nodes, places) = moving.into_nodes(document, tree, (&carriers, &objects.bones))?;
+    let placements = objects.placements.iter().zip(&objects.moves).enumerate().filter(|(_, (_, moves))| **moves);
+    let attachments = placements.filter_map(|(object, (placement, _))| {
         let node = places[placement.node]?;
         // There are at most 2^24 objects.
         Some(Attachment { object: object as u32, node, node_from_object: placement.node_from_object })
@@ -122,38 +143,13 @@ fn set_in_motion(
         }
         (object.world_from_object, object.dynamic) = (world_from_object, true);
     }
-    for (camera, node) in scene.cameras.iter_mut().zip(nodes_of_cameras) {
-        camera.node = places[node];
+    for ((camera, node), moves) in scene.cameras.iter_mut().zip(nodes_of_cameras).zip(moves) {
+        camera.node = places[node].filter(|_| moves);
         if let Some(pose) = camera.node.and_then(|node| scene.motion.camera_pose_at(node, 0.0)) {
             camera.pose = pose;
         }
     }
-    Ok(())
-}
-
-/// Holds the skins in use to the specification, though they are not drawn yet.
-fn check_skins(document: &Document, tree: &Tree) -> Outcome<()> {
-    let mut used: Vec<_> = tree.order.iter().filter_map(|&node| document.root.nodes[node].skin).collect();
-    used.sort_unstable();
-    used.dedup();
-    for index in used {
-        let skin = element(&document.root, index, "skin")?;
-        let place = || label("skin", index.value(), skin.name.as_deref());
-        for &joint in &skin.joints {
-            element(&document.root, joint, "node").map_err(|fault| fault.within(place))?;
-        }
-        let mut roots = skin.joints.iter().map(|&joint| (joint, tree.roots[joint.value()]));
-        let Some((first, root)) = roots.next() else {
-            return broken(format!("{}: it has no joints", place()));
-        };
-        if let Some((joint, _)) = roots.find(|&(_, other)| other != root) {
-            return broken(format!(
-                "{}: its joints {first} and {joint} have no common root; put them under one node",
-                place()
-            ));
-        }
-    }
-    Ok(())
+    Ok(places)
 }
 
 fn check_cameras(cameras: &[Camera]) -> Outcome<()> {
@@ -165,9 +161,13 @@ fn check_cameras(cameras: &[Camera]) -> Outcome<()> {
 
 /// Says once what is drawn without its motion.
 fn warn_of_stills(document: &Document, scene: &str, nodes: &[usize]) {
-    let skinned = nodes.iter().filter(|&&node| document.root.nodes[node].skin.is_some()).count();
-    if skinned > 0 {
-        tracing::warn!("{scene}: {skinned} skinned meshes are drawn as they lie in the file, without their skeletons");
+    let meshes = nodes
+        .iter()
+        .filter_map(|&node| document.root.nodes[node].mesh.filter(|_| document.root.nodes[node].skin.is_some()));
+    let primitives = meshes.filter_map(|mesh| document.root.meshes.get(mesh.value())).flat_map(|mesh| &mesh.primitives);
+    let more = primitives.filter(|primitive| primitive.attributes.contains_key(&Valid(Semantic::Joints(1)))).count();
+    if more > 0 {
+        tracing::warn!("{scene}: {more} skinned meshes have more than four joints a vertex, of which four bend it");
     }
     let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
     let morphs = channels.filter(|channel| channel.target.path == Valid(MorphTargetWeights)).count();

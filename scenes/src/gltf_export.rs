@@ -6,7 +6,7 @@
 //! - A texture of objects whose mesh has no texture coordinates is not drawn, and comes back as none.
 //! - Objects whose mesh is empty come back as nothing: glTF has no empty meshes.
 //! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
-//!   motion, skew is lost.
+//!   motion, skew is lost. So it is with skeletons, whose inverse bind matrices are rounded to `f32`; meshes that they bend are written as they are at rest.
 //! - The path is the animated camera `path <name>`, 30 keys a second, in `f32`, with the field of view of its first frame.
 //! - The walk is not written, nor what is solid of a city's buildings.
 //!
@@ -14,6 +14,7 @@
 
 mod binary;
 mod motion;
+mod skins;
 
 use crate::camera::Projection;
 use crate::error::SceneError;
@@ -34,12 +35,13 @@ use std::collections::HashMap;
 pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Result<Vec<u8>, SceneError> {
     scene.check()?;
     let mut export = Export::default();
-    export.geometry(&scene.meshes);
+    export.geometry(scene);
     export.textures(&scene.textures)?;
     for object in &scene.objects {
         export.object(object, &scene.meshes);
     }
     export.roots.extend(0..export.nodes.len());
+    export.bent_objects(scene)?;
     let shots = motion::samples(scene, path, frames);
     if let Some(path) = path {
         export.path_camera(path, &shots)?;
@@ -53,6 +55,7 @@ pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Re
         export.camera(&camera.name, &camera.projection, node)?;
     }
     export.object_motion(scene, &shots);
+    export.skeletons(scene, &shots);
     export.extras = scene.cells.as_ref().map_or(Value::Null, cells::extras);
     export.finish(&scene.name)
 }
@@ -73,6 +76,7 @@ struct Export {
     images: Vec<Value>,
     texture_samplers: Vec<Value>,
     cameras: Vec<Value>,
+    skins: Vec<Value>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
     /// The primitive of each scene mesh, without its material; null for empty ones.
@@ -85,8 +89,8 @@ struct Export {
 }
 
 impl Export {
-    fn geometry(&mut self, meshes: &[Mesh]) {
-        for mesh in meshes {
+    fn geometry(&mut self, scene: &Scene) {
+        for mesh in skins::meshes_at_rest(scene).iter() {
             if mesh.positions.is_empty() || mesh.indices.is_empty() {
                 self.primitives.push(Value::Null);
                 continue;
@@ -236,6 +240,7 @@ impl Export {
             ("images", self.images),
             ("samplers", self.texture_samplers),
             ("cameras", self.cameras),
+            ("skins", self.skins),
             ("animations", animations),
             ("accessors", accessors),
             ("bufferViews", views),

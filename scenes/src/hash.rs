@@ -2,6 +2,7 @@
 
 use crate::animation::{Motion, Orbit};
 use crate::model::{Mesh, Object, Scene, Surface};
+use crate::skin::Skinned;
 use glam::DAffine3;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -26,6 +27,7 @@ impl Scene {
             hash_debug(&mut hash, &(camera.pose, camera.projection, camera.node));
         }
         hash_debug(&mut hash, &self.walk);
+        hash_skins(&mut hash, self);
         hash.finalize().into()
     }
 }
@@ -93,6 +95,24 @@ fn hash_materials(hash: &mut Sha256, scene: &Scene) {
         hash_numbers(hash, texture.size.into_iter().map(u32::to_le_bytes));
         hash_numbers(hash, texture.texels.iter().copied());
         hash.update(texture.wrap.map(|wrap| wrap as u8));
+    }
+}
+
+/// Only of scenes that have any, so that all others keep the hash that they have always had.
+fn hash_skins(hash: &mut Sha256, scene: &Scene) {
+    if scene.skins.is_empty() {
+        return;
+    }
+    hash_debug(hash, &scene.skins);
+    for Skinned { object, skin, rest } in &scene.skinned {
+        hash.update(b"skinned");
+        hash_numbers(hash, [*object, *skin].into_iter().map(u32::to_le_bytes));
+        hash_count(hash, rest.len());
+        for vertex in rest {
+            let vectors = vertex.position.to_array().into_iter().chain(vertex.normal.to_array());
+            hash_numbers(hash, vectors.chain(vertex.weights).map(f32::to_le_bytes));
+            hash_numbers(hash, vertex.joints.into_iter().map(u32::to_le_bytes));
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! Nothing here knows Vulkan. A [`Scene`] is plain data in `f64` world space; the `culling` crate uploads it.
 
 pub mod animation;
+mod bend;
 mod bounds;
 pub mod bvh;
 mod camera;
@@ -19,6 +20,7 @@ mod moving;
 mod open;
 mod path;
 pub mod procedural;
+mod skin;
 mod texture;
 
 pub use animation::Motion;
@@ -34,4 +36,5 @@ pub use moving::{MovingBounds, MovingBoxes};
 pub use open::open;
 pub use path::{record, record_shots, CameraPath, PathKind, Shot};
 pub use procedural::SceneOptions;
+pub use skin::{weights_of_sum_one, JointPlaces, RestVertex, Skin, Skinned, JOINTS_A_VERTEX};
 pub use texture::{Texture, Wrap};

@@ -2,6 +2,7 @@
 
 use crate::animation::Motion;
 use crate::camera::Camera;
+use crate::skin::{Skin, Skinned};
 use crate::texture::Texture;
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
@@ -101,6 +102,10 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// How dynamic objects move.
     pub motion: Motion,
+    /// Skeletons.
+    pub skins: Vec<Skin>,
+    /// The objects that they bend, by ascending object. See [`Scene::bend`].
+    pub skinned: Vec<Skinned>,
     /// Where one can walk, if the generator knows.
     pub walk: Option<Walk>,
     /// What is solid of a city; empty for scenes that are none.

@@ -11,12 +11,21 @@
 //! Orbits never end, and need no spans: a point z, seen from the centre, goes round the axis a on a circle, whose box is
 //! `(a·z) a ± sqrt((z - (a·z) a)² + (a × z)²)`, component by component. Its sides are largest values of functions that are linear in z, so
 //! convex: the corners of the mesh's box have the largest again.
+//!
+//! What a skeleton bends has the bounds of all its joints together, each of which carries some of the vertices: see [`bent`].
 
+mod bent;
+mod carried;
 mod spread;
 
-use crate::animation::{AnimatedNode, Attachment, Motion, NodeAnimation, Orbit};
-use crate::bounds::WorldBounds;
+pub(crate) use bent::bent_always;
+
+use crate::animation::{Attachment, Motion, NodeAnimation, Orbit};
+use crate::bounds::{Reach, WorldBounds};
 use crate::model::{Aabb, Scene};
+use crate::skin::JointPlaces;
+use bent::Body;
+use carried::{chain, Hung};
 use glam::{DAffine3, DVec3};
 use spread::{stretch, Span};
 
@@ -62,6 +71,8 @@ const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 pub struct MovingBoxes {
     mode: MovingBounds,
     sweeps: Vec<Sweep>,
+    /// Of those that a skeleton bends; empty if there are no such.
+    bodies: Vec<Option<Body>>,
 }
 
 /// What is known of one object's motion before it begins.
@@ -80,11 +91,17 @@ impl MovingBoxes {
     /// Looks through the whole motion, unless bounds are had for each frame.
     pub fn new(scene: &Scene, bounds: &WorldBounds, mode: MovingBounds) -> Self {
         let shape = |object: u32| Shape::new(bounds, scene.objects[object as usize].mesh, mode);
+        let bodies = bent::bodies(scene);
         let sweeps = match &scene.motion {
             _ if mode == MovingBounds::PerFrame => Vec::new(),
             Motion::Still => Vec::new(),
             Motion::Nodes(nodes) => {
-                nodes.objects().iter().map(|attachment| shape(attachment.object).on_nodes(nodes, attachment)).collect()
+                let sweep = |(place, attachment): (usize, &Attachment)| match bodies.get(place).and_then(Option::as_ref)
+                {
+                    Some(body) => body.on_nodes(nodes, &scene.skins[body.skin as usize], mode),
+                    None => shape(attachment.object).on_nodes(nodes, attachment),
+                };
+                nodes.objects().iter().enumerate().map(sweep).collect()
             }
             Motion::Orbits(orbits) => {
                 let mut sorted: Vec<&Orbit> = orbits.iter().collect();
@@ -92,7 +109,7 @@ impl MovingBoxes {
                 sorted.into_iter().map(|orbit| shape(orbit.object).in_orbit(orbit)).collect()
             }
         };
-        MovingBoxes { mode, sweeps }
+        MovingBoxes { mode, sweeps, bodies }
     }
 
     /// How they are had.
@@ -101,15 +118,21 @@ impl MovingBoxes {
     }
 
     /// Bounds at a time of one of the moving objects, by its place in the order, which then has this transform; `bounds` and `mesh`
-    /// are those that they were made with. Not valid if the motion is not finite.
+    /// are those that they were made with, and joints are at that time. Not valid if the motion is not finite.
     pub fn at(
         &self,
         moving: usize,
         seconds: f64,
         bounds: &WorldBounds,
         (mesh, world_from_object): (u32, &DAffine3),
+        joints: &JointPlaces,
     ) -> Aabb {
-        let Some(sweep) = self.sweeps.get(moving) else { return bounds.of(mesh, world_from_object) };
+        let Some(sweep) = self.sweeps.get(moving) else {
+            return match self.bodies.get(moving).and_then(Option::as_ref) {
+                Some(body) => body.bounds(world_from_object, joints.of(body.skin)),
+                None => bounds.of(mesh, world_from_object),
+            };
+        };
         let box_ = sweep.boxes[sweep.cuts.partition_point(|cut| *cut <= seconds)];
         if self.mode != MovingBounds::InPlace {
             return box_;
@@ -124,25 +147,58 @@ impl MovingBoxes {
     }
 }
 
-/// What moves.
+/// What moves as a whole.
 struct Shape<'a> {
-    bounds: &'a WorldBounds,
-    mesh: u32,
+    reach: &'a Reach,
     mode: MovingBounds,
     corners: [DVec3; 8],
     middle: DVec3,
 }
 
-/// Where a shape can be while a span passes.
+/// Where something can be while a span passes.
 struct Swept {
     bounds: Aabb,
     farthest: f64,
 }
 
+/// The sweep of what consists of parts, each of which hangs on nodes and is somewhere in each span.
+fn sweep(parts: &[Hung<'_>], mode: MovingBounds, middle: DVec3, swept: impl Fn(&Hung<'_>, Span) -> Swept) -> Sweep {
+    let sorted = |mut times: Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    };
+    let cuts = match mode {
+        MovingBounds::PerAnimation => {
+            parts.iter().flat_map(|part| &part.chain).flat_map(|node| node.track_ends()).collect()
+        }
+        _ => Vec::new(),
+    };
+    let cuts = sorted(cuts);
+    let keys = parts.iter().map(|part| sorted(part.chain.iter().flat_map(|node| node.key_times()).collect()));
+    let keys: Vec<Vec<f64>> = keys.collect();
+    let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts.iter().copied());
+    let ends = cuts.iter().copied().chain([f64::INFINITY]);
+    let mut farthest = 0.0f64;
+    let boxes = starts.zip(ends).map(|(from, until)| {
+        let spans = parts
+            .iter()
+            .zip(&keys)
+            .flat_map(|(part, keys)| spans(keys, from, until).into_iter().map(move |span| (part, span)));
+        union(spans.map(|(part, span)| {
+            let swept = swept(part, span);
+            farthest = farthest.max(swept.farthest);
+            swept.bounds
+        }))
+    });
+    let boxes = boxes.collect();
+    Sweep { cuts, boxes, middle, farthest }
+}
+
 impl<'a> Shape<'a> {
     fn new(bounds: &'a WorldBounds, mesh: u32, mode: MovingBounds) -> Self {
         let local = bounds.in_object_space(mesh);
-        Shape { bounds, mesh, mode, corners: local.corners(), middle: local.centre() }
+        Shape { reach: bounds.reach(mesh), mode, corners: local.corners(), middle: local.centre() }
     }
 
     fn in_place(&self) -> bool {
@@ -155,65 +211,31 @@ impl<'a> Shape<'a> {
     }
 
     fn on_nodes(&self, nodes: &NodeAnimation, attachment: &Attachment) -> Sweep {
-        let chain = chain(nodes, attachment.node);
-        let mut cuts: Vec<f64> = match self.mode {
-            MovingBounds::PerAnimation => chain.iter().flat_map(|node| node.track_ends()).collect(),
-            _ => Vec::new(),
+        let whole = Hung {
+            reach: self.reach,
+            node_from_part: attachment.node_from_object,
+            chain: chain(nodes, attachment.node),
+            carrier: 0,
         };
-        let mut keys: Vec<f64> = chain.iter().flat_map(|node| node.key_times()).collect();
-        for times in [&mut cuts, &mut keys] {
-            times.sort_by(f64::total_cmp);
-            times.dedup();
-        }
-        let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts.iter().copied());
-        let ends = cuts.iter().copied().chain([f64::INFINITY]);
-        let mut farthest = 0.0f64;
-        let boxes = starts.zip(ends).map(|(from, until)| {
-            let swept = spans(&keys, from, until).into_iter().map(|span| self.swept(&chain, attachment, span));
-            union(swept.map(|swept| {
-                farthest = farthest.max(swept.farthest);
-                swept.bounds
-            }))
-        });
-        let boxes = boxes.collect();
-        Sweep { cuts, boxes, middle: self.middle, farthest }
+        sweep(&[whole], self.mode, self.middle, |whole, span| self.swept(whole, span))
     }
 
-    /// See the head of this file. `chain` goes from the object's node up.
-    fn swept(&self, chain: &[&AnimatedNode], attachment: &Attachment, span: Span) -> Swept {
-        let turned = |place: DAffine3| if self.in_place() { DAffine3::from_mat3(place.matrix3) } else { place };
-        let mut place = turned(attachment.node_from_object);
+    /// See the head of this file.
+    fn swept(&self, whole: &Hung<'_>, span: Span) -> Swept {
         let from = if self.in_place() { self.middle } else { DVec3::ZERO };
-        let mut corners = self.corners.map(|corner| place.transform_point3(corner - from));
-        let mut longer = stretch(&attachment.node_from_object.matrix3);
-        let mut farthest = longer * self.size() + attachment.node_from_object.translation.length();
-        let mut off = 0.0;
-        for node in chain {
-            let spread = node.spread(span);
-            let parent_from_node = turned(node.parent_from_node(span.middle()));
-            let before = longest(&corners);
-            corners = corners.map(|corner| parent_from_node.transform_point3(corner));
-            off = spread.turn * (spread.scale * off + spread.scale_off * before)
-                + spread.turn_off * spread.scale * before
-                + if self.in_place() { 0.0 } else { spread.shift_off };
-            longer *= spread.turn * spread.scale;
-            farthest = spread.turn * spread.scale * farthest + spread.shift;
-            place = parent_from_node * place;
-        }
-        let world_from_root = chain.last().map_or(DAffine3::IDENTITY, |root| root.world_from_root);
-        let fixed = stretch(&world_from_root.matrix3);
-        (off, longer) = (fixed * off, fixed * longer);
-        farthest = fixed * farthest + world_from_root.translation.length();
-        place = turned(world_from_root) * place;
-        let rounding = ROUNDING * (chain.len() + 2) as f64 * farthest;
-        let place = DAffine3 { translation: place.translation - place.matrix3 * from, ..place };
-        Swept { bounds: self.widened(&place, off + rounding, longer), farthest: farthest + rounding }
+        let mut carried = whole.begin(from, self.in_place());
+        carried.up(&whole.chain, span, self.in_place());
+        carried.up_to_world(whole, self.in_place());
+        let rounding = ROUNDING * (whole.chain.len() + 2) as f64 * carried.farthest;
+        let place = DAffine3 { translation: carried.place.translation - carried.place.matrix3 * from, ..carried.place };
+        let bounds = self.widened(&place, carried.off + rounding, carried.longer);
+        Swept { bounds, farthest: carried.farthest + rounding }
     }
 
     /// Its bounds at a place, so much wider, and for rounding where it may be as much longer.
     fn widened(&self, place: &DAffine3, by: f64, longer: f64) -> Aabb {
-        let by = by + self.bounds.most_padding(self.mesh, longer);
-        self.bounds.of(self.mesh, place).widened(DVec3::splat(by))
+        let by = by + self.reach.most_padding(longer);
+        self.reach.transformed(place).widened(DVec3::splat(by))
     }
 
     fn in_orbit(&self, orbit: &Orbit) -> Sweep {
@@ -231,7 +253,7 @@ impl<'a> Shape<'a> {
         let bounds = match turned {
             None => self.widened(&DAffine3 { translation: centre + arm, ..base }, rounding, longer),
             Some(axis) => {
-                let by = rounding + self.bounds.most_padding(self.mesh, longer);
+                let by = rounding + self.reach.most_padding(longer);
                 let round = round(axis, &self.corners.map(|corner| base.matrix3 * corner + arm));
                 Aabb { min: round.min + centre, max: round.max + centre }.widened(DVec3::splat(by))
             }
@@ -254,15 +276,6 @@ fn round(axis: DVec3, points: &[DVec3; 8]) -> Aabb {
 
 fn longest(vectors: &[DVec3; 8]) -> f64 {
     vectors.iter().map(|vector| vector.length()).fold(0.0, f64::max)
-}
-
-/// The node and those above it, the root last.
-fn chain(nodes: &NodeAnimation, node: usize) -> Vec<&AnimatedNode> {
-    let mut chain = vec![&nodes.nodes()[node]];
-    while let Some(parent) = chain[chain.len() - 1].parent {
-        chain.push(&nodes.nodes()[parent]);
-    }
-    chain
 }
 
 /// From one time on until before another, cut at all keys between, and into [`SPANS`] or more if there are keys.

@@ -142,3 +142,44 @@ fn an_empty_scene_can_be_written() {
     let back = read(&export_glb(&Scene::default(), None, 0).expect("it can be written"));
     assert!(back.objects.is_empty() && back.cameras.is_empty());
 }
+
+/// Where each bent vertex is at a time, in the world.
+fn bent_vertices(scene: &Scene, seconds: f64) -> Vec<glam::DVec3> {
+    let (joints, mut transforms) = (scene.joints_at(seconds), Vec::new());
+    scene.motion.transforms_at(seconds, &mut transforms);
+    let of_object = |skinned: &scenes::Skinned| {
+        let world_from_object = transforms.iter().find(|(object, _)| *object == skinned.object).expect("it moves").1;
+        let places = joints.of(skinned.skin).to_vec();
+        let place = move |vertex: &scenes::RestVertex| {
+            let carried = vertex.joints.iter().zip(vertex.weights).map(|(joint, weight)| {
+                places[*joint as usize].transform_point3(vertex.position.as_dvec3()) * f64::from(weight)
+            });
+            world_from_object.transform_point3(carried.sum())
+        };
+        skinned.rest.iter().map(place).collect::<Vec<_>>()
+    };
+    scene.skinned.iter().flat_map(of_object).collect()
+}
+
+#[test]
+fn skeletons_read_back_at_every_key() {
+    let scene = make("tentacles", 0.1);
+    let (first, last) = scene.motion.duration_s();
+    let frames = 33;
+    let back = read(&export_glb(&scene, None, frames).expect("it can be written"));
+    assert_eq!((back.skins.len(), back.skinned.len()), (scene.skins.len(), scene.skinned.len()));
+    for (a, b) in scene.objects.iter().zip(&back.objects) {
+        assert_eq!((&a.name, a.colour, a.dynamic), (&b.name, b.colour, b.dynamic));
+        let [a, b] = [(&scene, a), (&back, b)].map(|(scene, object)| &scene.meshes[object.mesh as usize]);
+        assert!(a.indices == b.indices, "{}", a.name);
+    }
+    for frame in [0, 7, 20, 32] {
+        let seconds = first + (last - first) * f64::from(frame) / (frames - 1) as f64;
+        let (written, read) = (bent_vertices(&scene, seconds), bent_vertices(&back, seconds));
+        assert_eq!(written.len(), read.len());
+        for (a, b) in written.iter().zip(&read) {
+            assert!(a.abs_diff_eq(*b, 1e-4), "frame {frame}: {a} {b}");
+        }
+    }
+    assert_ne!(bent_vertices(&scene, 0.0), bent_vertices(&scene, 0.5));
+}

@@ -1,20 +1,16 @@
 //! Bounds of what moves hold every vertex, where the GPU puts it, at every time, in each of the four ways to have them.
 
+mod moving_support;
+
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+use moving_support::{gpu_vertex, node, object, points, times, vector};
 use proptest::prelude::*;
 use scenes::animation::{AnimatedNode, Attachment, Interpolation, Local, NodeAnimation, Orbit, Track};
 use scenes::{
-    export_glb, import_bytes, Aabb, Mesh, Motion, MovingBounds, MovingBoxes, Object, Scene, SceneOptions, Surface,
+    export_glb, import_bytes, Aabb, JointPlaces, Mesh, Motion, MovingBounds, MovingBoxes, Scene, SceneOptions,
     WorldBounds,
 };
 use std::path::Path;
-
-/// The vertex as the GPU turns it: see `clip_from_object` in shaders/glsl/include/transform.glsl.
-fn gpu_vertex(transform: &DAffine3, position: Vec3) -> DVec3 {
-    let columns = transform.matrix3.as_mat3();
-    let turned = columns.x_axis * position.x + columns.y_axis * position.y + columns.z_axis * position.z;
-    turned.as_dvec3() + transform.translation
-}
 
 /// Every vertex that is outside of its box at one of these times.
 fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
@@ -23,9 +19,10 @@ fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
     let (mut transforms, mut faults) = (Vec::new(), Vec::new());
     for seconds in times {
         scene.motion.transforms_at(*seconds, &mut transforms);
+        let joints = scene.joints_at(*seconds);
         for (moving, (object, transform)) in transforms.iter().enumerate() {
             let object = &scene.objects[*object as usize];
-            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, transform));
+            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, transform), &joints);
             let farthest = boxes.farthest(moving).unwrap_or(f64::INFINITY);
             if transform.translation.abs().max_element() > farthest {
                 faults.push(format!("{mode:?}, {}, at {seconds}: its origin is beyond {farthest}", object.name));
@@ -40,27 +37,6 @@ fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
     faults
 }
 
-/// Some times in and around a motion, by chance and at all keys.
-fn times(keys: &[f64], by_chance: &[f64]) -> Vec<f64> {
-    let (first, last) = (keys.iter().copied().fold(0.0, f64::min), keys.iter().copied().fold(1.0, f64::max));
-    let inside = by_chance.iter().map(|part| first - 0.1 + part * (last - first + 0.2));
-    let around = keys.iter().flat_map(|key| [key.next_down(), *key, key.next_up()]);
-    inside.chain(around).chain([-1e6, 1e6]).collect()
-}
-
-fn object(name: &str, mesh: u32, world_from_object: DAffine3) -> Object {
-    Object {
-        name: name.into(),
-        mesh,
-        world_from_object,
-        colour: [1.0; 4],
-        dynamic: true,
-        translucent: false,
-        masked: false,
-        surface: Surface::default(),
-    }
-}
-
 fn scene(positions: Vec<Vec3>, motion: Motion) -> Scene {
     let mut transforms = Vec::new();
     motion.transforms_at(0.0, &mut transforms);
@@ -70,61 +46,6 @@ fn scene(positions: Vec<Vec3>, motion: Motion) -> Scene {
         motion,
         ..Scene::default()
     }
-}
-
-fn vector(size: f64) -> impl Strategy<Value = DVec3> {
-    prop::array::uniform3(-size..size).prop_map(DVec3::from)
-}
-
-fn rotation() -> impl Strategy<Value = DQuat> {
-    let four = prop::array::uniform4(-1.0..1.0f64).prop_map(DQuat::from_array);
-    four.prop_map(|turn| if turn.length() > 1e-3 { turn.normalize() } else { DQuat::IDENTITY })
-}
-
-fn interpolation() -> impl Strategy<Value = Interpolation> {
-    prop_oneof![Just(Interpolation::Step), Just(Interpolation::Linear), Just(Interpolation::CubicSpline)]
-}
-
-/// Key times, some of them equal; values and tangents for as many.
-fn track<T: scenes::animation::Interpolate + std::fmt::Debug>(
-    value: impl Strategy<Value = T>,
-    tangent: impl Strategy<Value = T>,
-) -> impl Strategy<Value = Option<Track<T>>> {
-    let key = (prop_oneof![0.01..2.0f64, Just(0.0)], value, prop::array::uniform2(tangent));
-    let keys = prop::collection::vec(key, 1..5);
-    let made = (interpolation(), -3.0..3.0f64, keys).prop_map(|(interpolation, start, keys)| {
-        let mut seconds = start;
-        let times = keys.iter().map(|(step, ..)| {
-            seconds += step;
-            seconds
-        });
-        let times = times.collect();
-        let splines = interpolation == Interpolation::CubicSpline;
-        let values = keys.iter().flat_map(|(_, value, [before, after])| match splines {
-            true => vec![*before, *value, *after],
-            false => vec![*value],
-        });
-        Track::new(interpolation, times, values.collect()).expect("a legal track")
-    });
-    prop::option::weighted(0.6, made)
-}
-
-fn node() -> impl Strategy<Value = (AnimatedNode, bool)> {
-    let tangent = prop::array::uniform4(-3.0..3.0f64).prop_map(DQuat::from_array);
-    let tracks =
-        (track(vector(5.0), vector(9.0)), track(rotation(), tangent), track(vector(2.0), vector(3.0)), any::<bool>());
-    let matrix = prop::array::uniform9(-1.5..1.5f64).prop_map(|columns| DMat3::from_cols_array(&columns));
-    (tracks, vector(4.0), rotation(), vector(1.5), matrix, any::<bool>()).prop_map(
-        |((translation, rotation, scale, grows_up), at, turn, size, matrix, fixed)| {
-            let moves = translation.is_some() || rotation.is_some() || scale.is_some();
-            let place = DAffine3 { matrix3: matrix, translation: at };
-            let local = match fixed && !moves {
-                true => Local::Matrix(place),
-                false => Local::Parts { translation: at, rotation: turn, scale: size },
-            };
-            (AnimatedNode { parent: None, world_from_root: place, local, translation, rotation, scale }, grows_up)
-        },
-    )
 }
 
 /// A few nodes, each of which hangs on the one before or is a root, with an object on each.
@@ -157,10 +78,6 @@ fn motion() -> impl Strategy<Value = (Motion, Vec<f64>)> {
         let animation = NodeAnimation::new(nodes, (0..count).map(on).collect()).expect("a legal animation");
         (Motion::Nodes(animation), keys)
     })
-}
-
-fn points() -> impl Strategy<Value = Vec<Vec3>> {
-    prop::collection::vec(prop::array::uniform3(-2.0..3.0f32).prop_map(Vec3::from), 1..12)
 }
 
 fn orbit() -> impl Strategy<Value = Orbit> {
@@ -235,7 +152,7 @@ fn a_box_around_the_keys_alone_is_caught() {
         keys = keys.union(bounds.of(0, &transforms[0].1));
     }
     let boxes = MovingBoxes::new(&scene, &bounds, MovingBounds::Union);
-    let union = boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY));
+    let union = boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &JointPlaces::default());
     scene.motion.transforms_at(0.75, &mut transforms);
     let vertex = gpu_vertex(&transforms[0].1, Vec3::X);
     assert!(!keys.contains(vertex) && union.contains(vertex), "{vertex}: {keys:?}, {union:?}");
@@ -280,7 +197,7 @@ fn the_four_ways_differ_as_the_chapter_says() {
     let mut transforms = Vec::new();
     let mut at = |mode, seconds: f64| {
         scene.motion.transforms_at(seconds, &mut transforms);
-        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &transforms[0].1))
+        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &transforms[0].1), &JointPlaces::default())
     };
     let width = |box_: Aabb| box_.max.x - box_.min.x;
     assert_eq!(at(MovingBounds::Union, 1.0), at(MovingBounds::Union, 7.0));
@@ -337,5 +254,5 @@ fn a_motion_that_is_not_finite_gives_a_box_that_is_not_valid() {
     let scene = scene(vec![Vec3::ONE], Motion::Orbits(vec![orbit]));
     let bounds = WorldBounds::new(&scene);
     let boxes = MovingBoxes::new(&scene, &bounds, MovingBounds::Union);
-    assert!(!boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY)).is_valid());
+    assert!(!boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &JointPlaces::default()).is_valid());
 }

@@ -195,6 +195,37 @@ fn a_third_of_the_moving_boxes_move_and_nothing_else() {
 }
 
 #[test]
+fn two_thirds_of_what_stands_among_the_walls_are_tentacles_and_each_sways() {
+    let scene = make("tentacles", 0.5, 1);
+    assert_eq!((scene.objects.len(), scene.skinned.len()), (181, 120));
+    let bent: Vec<u32> = scene.skinned.iter().map(|skinned| skinned.object).collect();
+    assert_eq!(bent, scene.motion.dynamic_objects());
+    let (now, later) = (scene.joints_at(0.0), scene.joints_at(1.5));
+    for skinned in &scene.skinned {
+        assert_ne!(now.of(skinned.skin), later.of(skinned.skin), "tentacle {}", skinned.object);
+    }
+}
+
+#[test]
+fn the_hash_sees_every_change_of_a_skeleton() {
+    let base = make("tentacles", 0.05, 1);
+    type Change = fn(&mut Scene);
+    let changes: [Change; 6] = [
+        |scene| scene.skinned[1].rest[2].position.x += 1e-6,
+        |scene| scene.skinned[1].rest[2].normal = -scene.skinned[1].rest[2].normal,
+        |scene| scene.skinned[1].rest[2].joints.swap(0, 1),
+        |scene| scene.skinned[1].rest[30].weights.swap(0, 1),
+        |scene| scene.skinned.swap(0, 1),
+        |scene| scene.skins.swap(0, 1),
+    ];
+    for (index, change) in changes.iter().enumerate() {
+        let mut scene = base.clone();
+        change(&mut scene);
+        assert_ne!(scene.content_hash(), base.content_hash(), "change {index}");
+    }
+}
+
+#[test]
 fn the_hash_sees_every_change_of_a_picture() {
     let base = make("moving-boxes", 0.1, 1);
     type Change = fn(&mut Scene);

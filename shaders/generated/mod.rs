@@ -105,4 +105,5 @@ pub const STAGES: &[&StageInfo] = &[
     <woc::LeaveRapid as Stage>::INFO,
     <world::MoveObjects as Stage>::INFO,
     <world::MoveTransforms as Stage>::INFO,
+    <world::SkinVertices as Stage>::INFO,
 ];

@@ -380,6 +380,28 @@ const _: () = {
     assert!(size_of::<FlareBlock>() == 28);
 };
 
+/// Where a joint puts vertices at rest, seen from their object, this frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct JointPlace {
+    /// Linear part.
+    pub column_x: [f32; 3],
+    /// `column_y` in GLSL.
+    pub column_y: [f32; 3],
+    /// `column_z` in GLSL.
+    pub column_z: [f32; 3],
+    /// `shift` in GLSL.
+    pub shift: [f32; 3],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(JointPlace, column_x) == 0);
+    assert!(std::mem::offset_of!(JointPlace, column_y) == 12);
+    assert!(std::mem::offset_of!(JointPlace, column_z) == 24);
+    assert!(std::mem::offset_of!(JointPlace, shift) == 36);
+    assert!(size_of::<JointPlace>() == 48);
+};
+
 /// The box of a mesh in object space, rounded outward.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -573,6 +595,28 @@ pub struct Reprojection {
 const _: () = {
     assert!(std::mem::offset_of!(Reprojection, clip_from_last) == 0);
     assert!(size_of::<Reprojection>() == 64);
+};
+
+/// A vertex that joints carry, at rest.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct RestVertex {
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// `normal` in GLSL.
+    pub normal: [f32; 3],
+    /// Places of JointPlace.
+    pub joints: [u32; 4],
+    /// None negative; they add up to 1.
+    pub weights: [f32; 4],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(RestVertex, position) == 0);
+    assert!(std::mem::offset_of!(RestVertex, normal) == 12);
+    assert!(std::mem::offset_of!(RestVertex, joints) == 24);
+    assert!(std::mem::offset_of!(RestVertex, weights) == 40);
+    assert!(size_of::<RestVertex>() == 56);
 };
 
 /// A node of the tree. Children lie side by side. Positions are relative to the tree's own origin.

@@ -116,3 +116,75 @@ const _: () = {
     assert!(std::mem::offset_of!(MoveTransformsPush, move_count) == 0);
     assert!(size_of::<MoveTransformsPush>() == 4);
 };
+
+/// Puts each vertex that joints carry where the mean of their places puts it, and turns its normal (glTF 2.0, 3.7.3.3).
+/// Bounds allow for what this rounds: scenes/src/moving/bent.rs counts the operations. Twin: culling/src/world/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct SkinVertices {
+    /// `rest` in GLSL.
+    pub rest: BufferRef<types::RestVertex>,
+    /// `places` in GLSL.
+    pub places: BufferRef<types::JointPlace>,
+    /// Vertices that begin with a position and a normal, whatever follows.
+    pub vertices: BufferRef<u32>,
+    /// `vertex_count` in GLSL.
+    pub vertex_count: u32,
+    /// Of the first that is written; they lie side by side.
+    pub first_word: u32,
+    /// `stride_words` in GLSL.
+    pub stride_words: u32,
+}
+
+impl Stage for SkinVertices {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "world/skin_vertices",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/world/skin_vertices.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "rest", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "places", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "vertices", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 12,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = SkinVerticesPush {
+            vertex_count: self.vertex_count,
+            first_word: self.first_word,
+            stride_words: self.stride_words,
+        };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.rest.into(), self.places.into(), self.vertices.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for SkinVertices {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SkinVerticesPush {
+    vertex_count: u32,
+    first_word: u32,
+    stride_words: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(SkinVerticesPush, vertex_count) == 0);
+    assert!(std::mem::offset_of!(SkinVerticesPush, first_word) == 4);
+    assert!(std::mem::offset_of!(SkinVerticesPush, stride_words) == 8);
+    assert!(size_of::<SkinVerticesPush>() == 12);
+};

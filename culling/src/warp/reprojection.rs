@@ -9,12 +9,13 @@ use shaders::types::Reprojection;
 pub struct LastFrame {
     view: View,
     transforms: Vec<(u32, DAffine3)>,
+    shapes: u64,
 }
 
 impl LastFrame {
     /// The view, and where the world's moving objects are now.
     pub fn of(world: &World, view: &View) -> Self {
-        LastFrame { view: *view, transforms: world.moving().collect() }
+        LastFrame { view: *view, transforms: world.moving().collect(), shapes: world.shape_revision() }
     }
 
     /// What it looked through.
@@ -34,6 +35,9 @@ pub struct Reprojections {
 
 /// The way from the last frame's clip space to the new one's.
 ///
+/// What a skeleton has bent since then has no such way: a pixel of it goes nowhere (everything is 0, which no place in front of an eye is), so that
+/// it hides nothing.
+///
 /// All of it is f64: a point's world position never appears in floats, so motion is as exact a million metres from the origin
 /// as beside it.
 ///
@@ -43,8 +47,11 @@ pub fn reprojections(last: &LastFrame, world: &World, view: &View) -> Reprojecti
     let moving: Vec<(u32, DAffine3)> = world.moving().collect();
     assert_eq!(moving.len(), last.transforms.len(), "the last frame is of another world");
     let camera = clip_from_last(last.view(), view, &DAffine3::IDENTITY);
-    let of_object = |((_, now), (_, before)): (&(u32, DAffine3), &(u32, DAffine3))| {
-        if now == before {
+    let same_shapes = world.shape_revision() == last.shapes;
+    let of_object = |((object, now), (_, before)): (&(u32, DAffine3), &(u32, DAffine3))| {
+        if !same_shapes && world.is_bent(*object) {
+            DMat4::ZERO
+        } else if now == before {
             camera
         } else {
             clip_from_last(last.view(), view, &(*now * before.inverse()))

@@ -4,6 +4,7 @@
 mod texels;
 
 use super::draws::{record, MaybeQueried};
+use super::upload::Flat;
 use super::View;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Surface, Target};
@@ -23,17 +24,23 @@ pub(super) struct Detail {
 }
 
 impl Detail {
-    /// For vertices in the scene's order and objects in the world's.
-    pub(super) fn new(gpu: &Gpu, scene: &Scene, plain: &[ObjectsVertex], scene_object: &[u32]) -> Result<Self> {
+    /// Beside the vertices and objects of a world.
+    pub(super) fn new(gpu: &Gpu, scene: &Scene, flat: &Flat) -> Result<Self> {
         let texels = Texels::new(scene);
-        let (object_materials, materials) = materials(scene, &texels, scene_object);
+        let (object_materials, materials) = materials(scene, &texels, &flat.scene_object);
+        let vertices = vertices(scene, &flat.vertices, &flat.mesh_order);
         let storage = Placement::Storage;
         Ok(Detail {
-            vertices: Buffer::with_data(gpu, "world.textured_vertices", &vertices(scene, plain), Placement::Geometry)?,
+            vertices: Buffer::with_data(gpu, "world.textured_vertices", &vertices, Placement::Geometry)?,
             object_materials: Buffer::with_data(gpu, "world.object_materials", &object_materials, storage)?,
             materials: Buffer::with_data(gpu, "world.materials", &materials, storage)?,
             texels: Buffer::with_data(gpu, "world.texels", &texels.all, storage)?,
         })
+    }
+
+    /// Positions and normals are those of all of the world's vertices, and change with them.
+    pub(super) fn vertices(&self) -> BufferRef<MaskedVertex> {
+        self.vertices.all()
     }
 
     fn dressed(&self, draw: IndexedIndirect) -> IndexedIndirect {
@@ -92,8 +99,8 @@ impl Detail {
     }
 }
 
-fn vertices(scene: &Scene, plain: &[ObjectsVertex]) -> Vec<MaskedVertex> {
-    let extras = scene.meshes.iter().flat_map(|mesh| {
+fn vertices(scene: &Scene, plain: &[ObjectsVertex], mesh_order: &[usize]) -> Vec<MaskedVertex> {
+    let extras = mesh_order.iter().map(|mesh| &scene.meshes[*mesh]).flat_map(|mesh| {
         (0..mesh.positions.len()).map(|vertex| {
             let at = mesh.texture_coordinates.get(vertex).map_or([0.0; 2], |at| at.to_array());
             (at, mesh.colours.get(vertex).map_or(u32::MAX, |colour| u32::from_le_bytes(*colour)))

@@ -8,6 +8,7 @@ mod moving;
 mod order;
 mod read;
 mod several;
+mod skins;
 mod solids;
 mod still;
 mod ties;
@@ -18,6 +19,7 @@ mod view;
 pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
 pub use drawn::{draw_lists, drawn_by, drawn_objects, Drawn};
 pub use several::BoxesOfMeshes;
+pub use skins::BentVertices;
 pub use solids::Solid;
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
@@ -34,6 +36,7 @@ use scenes::{Cells, MovingBounds, Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, Object};
 use shaders::{draw, frustum, BufferRef, ResourceId, Stage};
+use skins::Skins;
 
 /// What of a scene's materials is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +85,8 @@ pub struct World {
     object_meshes: Buffer<u32>,
     all_commands: Buffer<DrawCommand>,
     moving: Option<Moving>,
+    /// None if no skeleton bends anything.
+    skins: Option<Skins>,
     blocks: Blocks,
     ranges: Vec<Range>,
     /// Materials; none if each object has one colour.
@@ -150,13 +155,14 @@ impl World {
         let solid = flat.solid;
         let detail = match shading {
             Shading::Lambert => None,
-            Shading::Textured => Some(Detail::new(gpu, scene, &flat.vertices, &flat.scene_object)?),
+            Shading::Textured => Some(Detail::new(gpu, scene, &flat)?),
         };
         let still_or_solid = |object: &&u32| (**object as usize) < solid;
         let solid_moving: Vec<u32> = moving_objects.iter().filter(still_or_solid).copied().collect();
         let mut transforms = Vec::new();
         scene.motion.transforms_at(0.0, &mut transforms);
         let moving = Moving::new(gpu, scene, (&mut flat, &object_of_scene), of_moving, &transforms)?;
+        let skins = Skins::new(gpu, scene, &flat, &object_of_scene)?;
         Ok(World {
             vertices: Buffer::with_data(gpu, "world.vertices", &flat.vertices, Placement::Geometry)?,
             indices: Buffer::with_data(gpu, "world.indices", &flat.indices, Placement::Geometry)?,
@@ -166,6 +172,7 @@ impl World {
             object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
             all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
             moving,
+            skins,
             blocks: Blocks::new(gpu, &flat.bounds[..solid], &solid_moving)?,
             detail,
             ranges: flat.ranges,

@@ -3,12 +3,13 @@
 //! With bounds for each frame, every moving object brings its own. Bounds that hold more than one place (an animation's, or all) are
 //! brought only where they change, so that most frames bring transforms alone.
 
+use super::skins::Skins;
 use super::upload::{self, Flat};
 use super::World;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, Placement};
 use glam::{DAffine3, DVec3};
-use scenes::{MovingBounds, MovingBoxes, Scene};
+use scenes::{JointPlaces, MovingBounds, MovingBoxes, Scene};
 use shaders::types::{Bounds, MovedObject, MovedTransform};
 use shaders::{world, Stage};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -42,11 +43,13 @@ impl Moving {
         }
         let boxes = MovingBoxes::new(scene, &flat.world_bounds, mode);
         // For each frame anew: until the first time is set, objects have the bounds of where they are.
-        let known = transforms.iter().enumerate().filter(|_| mode != MovingBounds::PerFrame);
+        let known =
+            transforms.iter().enumerate().filter(|_| mode != MovingBounds::PerFrame || !scene.skinned.is_empty());
+        let joints = scene.joints_at(0.0);
         for (place, (scene_object, transform)) in known {
             let object = object_of_scene[*scene_object as usize] as usize;
             let mesh = flat.scene_meshes[object];
-            flat.boxes[object] = boxes.at(place, 0.0, &flat.world_bounds, (mesh, transform));
+            flat.boxes[object] = boxes.at(place, 0.0, &flat.world_bounds, (mesh, transform), &joints);
             flat.bounds[object] = bounds_of(&boxes, place, &flat.boxes[object], transform, flat.bounds[object].flags);
         }
         let upload = Placement::Upload;
@@ -83,6 +86,11 @@ impl World {
         }
         let host = &mut self.host;
         scene.motion.transforms_at(seconds, &mut host.transforms);
+        if let Some(skins) = &mut self.skins {
+            skins.set_time(scene, seconds)?;
+        }
+        let none = JointPlaces::default();
+        let joints = self.skins.as_ref().map_or(&none, Skins::joints);
         if moving.brought.swap(false, Ordering::Relaxed) {
             moving.changed.fill(false);
         }
@@ -92,7 +100,7 @@ impl World {
             let at = index as usize;
             let object = upload::object(transform, host.objects[at].colour);
             host.objects[at] = object;
-            host.boxes[at] = moving.boxes.at(place, seconds, &host.bounds, (host.scene_meshes[at], transform));
+            host.boxes[at] = moving.boxes.at(place, seconds, &host.bounds, (host.scene_meshes[at], transform), joints);
             let bounds = bounds_of(&moving.boxes, place, &host.boxes[at], transform, host.flags[at]);
             let changes = moving.boxes.mode() == MovingBounds::PerFrame || bounds != moving.bounds[place];
             any |= changes;
@@ -112,12 +120,16 @@ impl World {
         Ok(())
     }
 
-    /// First step of every frame: moving objects take their places.
+    /// First step of every frame: moving objects take their places, and those that skeletons bend their shapes.
     pub fn update(&self, f: &mut Frame) {
-        let Some(moving) = &self.moving else {
-            f.skip(world::MoveObjects::INFO.name, "no dynamic objects");
-            return;
-        };
+        match &self.moving {
+            Some(moving) => self.update_moving(f, moving),
+            None => f.skip(world::MoveObjects::INFO.name, "no dynamic objects"),
+        }
+        self.bend(f);
+    }
+
+    fn update_moving(&self, f: &mut Frame, moving: &Moving) {
         moving.brought.store(true, Ordering::Relaxed);
         let (objects, [moved, alone]) = (self.objects.all(), moving.counts);
         match &moving.transforms {

@@ -18,9 +18,17 @@ impl World {
         Ok(self.bounds.read()?)
     }
 
-    /// Meshes as the host knows them: where their vertices and indices are, which are relative to each mesh's first vertex, and the vertices.
+    /// Meshes as the host knows them: where their vertices and indices are, which are relative to each mesh's first vertex, and the vertices. Those that
+    /// a skeleton bends have their shape of time 0.
     pub fn read_meshes(&self) -> Result<(&[MeshRange], &[u32], Vec<ObjectsVertex>)> {
-        Ok((&self.host.meshes, &self.host.indices, self.vertices.read()?))
+        let mut vertices = self.vertices.read()?;
+        self.as_at_start(&mut vertices);
+        Ok((&self.host.meshes, &self.host.indices, vertices))
+    }
+
+    /// Vertices as they are on the GPU now; for tests.
+    pub fn read_vertices(&self) -> Result<Vec<ObjectsVertex>> {
+        Ok(self.vertices.read()?)
     }
 
     /// A command for every object that culling methods see.

@@ -15,7 +15,8 @@ pub type BoxesOfMeshes = Arc<Vec<Option<MeshBoxes>>>;
 pub(super) struct Several {
     /// By mesh of the scene.
     topologies: Vec<Topology>,
-    /// A mesh that declares a larger box than it needs has that one: whoever declares it may move vertices within.
+    /// A mesh that declares a larger box than it needs has that one: whoever declares it may move vertices within, as what a skeleton bends
+    /// does.
     declared: Vec<bool>,
     /// By how many boxes were asked for.
     made: Mutex<BTreeMap<u32, BoxesOfMeshes>>,

@@ -30,6 +30,8 @@ pub(super) struct Flat {
     pub(super) solid: usize,
     pub(super) scene_object: Vec<u32>,
     pub(super) world_bounds: WorldBounds,
+    /// Meshes in the order in which their vertices and indices lie.
+    pub(super) mesh_order: Vec<usize>,
 }
 
 /// How an object is drawn. In this order: translucent ones last.
@@ -124,7 +126,8 @@ fn add(meshes: &mut Vec<MeshRange>, mesh: MeshRange) -> u32 {
 }
 
 pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
-    let (vertices, indices, meshes) = geometry(&scene.meshes);
+    let mesh_order = mesh_order(scene);
+    let (vertices, indices, meshes) = geometry(&scene.meshes, &mesh_order);
     let mut variants = Variants { meshes, indices, turned: Default::default(), empty: None };
     let kind_of = |object: &scenes::Object| Kind::of(object, &scene.meshes[object.mesh as usize], shading);
     let world_bounds = WorldBounds::new(scene);
@@ -175,17 +178,27 @@ pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
         solid,
         scene_object,
         world_bounds,
+        mesh_order,
     }
 }
 
-fn geometry(meshes: &[Mesh]) -> (Vec<ObjectsVertex>, Vec<u32>, Vec<MeshRange>) {
-    let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-    for mesh in meshes {
-        ranges.push(MeshRange {
+/// The order in which the vertices of meshes lie: those that skeletons bend behind all others.
+fn mesh_order(scene: &Scene) -> Vec<usize> {
+    let mut bent = vec![false; scene.meshes.len()];
+    scene.skinned.iter().for_each(|skinned| bent[scene.objects[skinned.object as usize].mesh as usize] = true);
+    let mut order: Vec<usize> = (0..bent.len()).collect();
+    order.sort_by_key(|mesh| bent[*mesh]);
+    order
+}
+
+fn geometry(meshes: &[Mesh], order: &[usize]) -> (Vec<ObjectsVertex>, Vec<u32>, Vec<MeshRange>) {
+    let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), vec![MeshRange::default(); meshes.len()]);
+    for (mesh, range) in order.iter().map(|mesh| (&meshes[*mesh], *mesh)) {
+        ranges[range] = MeshRange {
             first_index: indices.len() as u32,
             index_count: mesh.indices.len() as u32,
             vertex_offset: vertices.len() as i32,
-        });
+        };
         let vertex = |(position, normal): (&Vec3, &Vec3)| ObjectsVertex {
             position: position.to_array(),
             normal_snorm16: octahedron(*normal),
@@ -290,7 +303,7 @@ fn colour(linear: [f32; 4]) -> u32 {
 }
 
 /// A unit normal folded onto an octahedron, as two signed 16-bit fractions.
-fn octahedron(normal: Vec3) -> [i16; 2] {
+pub(super) fn octahedron(normal: Vec3) -> [i16; 2] {
     let sum = normal.x.abs() + normal.y.abs() + normal.z.abs();
     let (mut x, mut y) = if sum > 0.0 { (normal.x / sum, normal.y / sum) } else { (0.0, 0.0) };
     if normal.z < 0.0 {

@@ -109,6 +109,29 @@ impl<'a> Accessors<'a> {
         self.elements(index, wanted, |Vector(components): Vector<C, N>| components.map(number))
     }
 
+    /// Reads matrices of four columns and rows, column by column.
+    pub(super) fn matrices(&self, index: Index<Accessor>) -> Outcome<Vec<[f32; 16]>> {
+        let read = || match self.component(index)? {
+            ComponentType::F32 => self.elements(index, Type::Mat4, |Vector(numbers): Vector<f32, 16>| numbers),
+            other => {
+                broken(format!("component type {} is not allowed here; matrices are of floats", other.as_gl_enum()))
+            }
+        };
+        read().map_err(|fault| fault.within(|| format!("accessor {index}")))
+    }
+
+    /// Reads four unsigned integers each, of 8 or 16 bits.
+    pub(super) fn joints(&self, index: Index<Accessor>) -> Outcome<Vec<[u32; 4]>> {
+        let read = || match self.component(index)? {
+            ComponentType::U8 => self.elements(index, Type::Vec4, |Vector(four): Vector<u8, 4>| four.map(u32::from)),
+            ComponentType::U16 => self.elements(index, Type::Vec4, |Vector(four): Vector<u16, 4>| four.map(u32::from)),
+            other => {
+                broken(format!("joints of component type {}; they must be unsigned (5121 or 5123)", other.as_gl_enum()))
+            }
+        };
+        read().map_err(|fault| fault.within(|| format!("accessor {index}")))
+    }
+
     /// Reads unsigned integers.
     pub(super) fn indices(&self, index: Index<Accessor>) -> Outcome<Vec<u32>> {
         let read = || match self.component(index)? {

@@ -53,15 +53,19 @@ impl Moving {
         self.moves[node]
     }
 
-    /// The moving nodes that carry one of `carriers`, parents first, and the place of each of the file's nodes in that list.
+    /// The moving nodes that carry one of `carriers`, and all `bones`, parents first, and the place of each of the file's nodes in that list.
     pub(super) fn into_nodes(
         mut self,
         document: &Document,
         tree: &Tree,
-        carriers: &[usize],
+        (carriers, bones): (&[usize], &[usize]),
     ) -> Outcome<(Vec<AnimatedNode>, Vec<Option<usize>>)> {
         let mut needed = vec![false; self.moves.len()];
-        for &carrier in carriers {
+        for &bone in bones {
+            needed[bone] = true;
+        }
+        let above_bones = bones.iter().filter_map(|bone| tree.parents[*bone]);
+        for carrier in carriers.iter().copied().chain(above_bones) {
             let mut node = Some(carrier);
             while let Some(at) = node.filter(|&at| self.moves[at] && !needed[at]) {
                 needed[at] = true;

@@ -5,11 +5,14 @@ use super::document::Document;
 use super::fault::{broken, element, label, one_line, Fault, Outcome};
 use super::materials::{Look, Materials};
 use super::mesh;
+use super::skins::{self, Bent, Influence, Skeleton, Skeletons};
 use super::tree::{node_label, placed, unit, Tree};
 use crate::check::MOST_OBJECTS;
 use crate::model::{Mesh, Object};
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::accessor::Accessor;
+use gltf::json::mesh::{Primitive, Semantic};
+use gltf::json::validation::Checked::Valid;
 use gltf::json::{Index, Mesh as FileMesh};
 use serde::Deserialize;
 use serde_json::Value;
@@ -18,6 +21,9 @@ use std::path::Path;
 
 /// Longest object or mesh name kept, in characters: a node's name is copied to each of its instances.
 const LONGEST_NAME: usize = 200;
+
+/// Most vertices that skins bend: nodes that share a mesh each have it for themselves then, so that a small file could ask for much.
+const MOST_BENT_VERTICES: usize = 1 << 24;
 
 /// A mesh primitive that has been read, and what its material says.
 #[derive(Clone, Copy)]
@@ -44,22 +50,41 @@ struct Instancing {
 pub(super) struct Objects<'a> {
     document: &'a Document<'a>,
     accessors: &'a Accessors<'a>,
+    skeletons: &'a Skeletons,
     /// By mesh, and by node if the node has morph weights of its own.
     parts: HashMap<(Index<FileMesh>, Option<usize>), Vec<Part>>,
     indices: usize,
+    bent_vertices: usize,
     /// The materials of those meshes, and their textures.
     pub materials: Materials<'a>,
     /// What has been found so far.
     pub meshes: Vec<Mesh>,
     pub objects: Vec<Object>,
     pub placements: Vec<Placement>,
+    /// Those that skins bend.
+    pub bent: Vec<Bent>,
 }
 
 impl<'a> Objects<'a> {
-    pub(super) fn new(document: &'a Document, accessors: &'a Accessors<'a>, folder: &'a Path) -> Self {
-        let (meshes, objects, placements) = (Vec::new(), Vec::new(), Vec::new());
-        let materials = Materials::new(document, accessors, folder);
-        Objects { document, accessors, parts: HashMap::new(), indices: 0, materials, meshes, objects, placements }
+    pub(super) fn new(
+        document: &'a Document,
+        accessors: &'a Accessors<'a>,
+        skeletons: &'a Skeletons,
+        folder: &'a Path,
+    ) -> Self {
+        Objects {
+            document,
+            accessors,
+            skeletons,
+            parts: HashMap::new(),
+            indices: 0,
+            bent_vertices: 0,
+            materials: Materials::new(document, accessors, folder),
+            meshes: Vec::new(),
+            objects: Vec::new(),
+            placements: Vec::new(),
+            bent: Vec::new(),
+        }
     }
 
     /// Adds the objects of one node.
@@ -67,8 +92,10 @@ impl<'a> Objects<'a> {
         let root = &self.document.root;
         let Some(mesh) = root.nodes[node].mesh else { return Ok(()) };
         let parts = self.parts(node, mesh)?;
+        let skin = root.nodes[node].skin;
         let extensions = root.nodes[node].extensions.as_ref();
         let instances = match extensions.and_then(|extensions| extensions.others.get("EXT_mesh_gpu_instancing")) {
+            Some(_) if skin.is_some() => return Err(instanced_skin()),
             Some(instancing) => self.instances(instancing).map_err(|fault| {
                 fault.within(|| format!("{}: EXT_mesh_gpu_instancing", node_label(self.document, node)))
             })?,
@@ -78,13 +105,19 @@ impl<'a> Objects<'a> {
         if total.is_none_or(|total| total > MOST_OBJECTS) {
             return Err(Fault::TooLarge(format!("it has more than {MOST_OBJECTS} objects")));
         }
+        let mut influences = match skin {
+            Some(skin) => self.influences(mesh, &parts, self.skeletons.of(skin))?.into_iter(),
+            None => Vec::new().into_iter(),
+        };
+        // What a skeleton bends hangs on that, wherever its node is.
+        let carrier = skin.map_or(node, |skin| self.skeletons.of(skin).anchor);
         let name = root.nodes[node].name.as_deref().or(root.meshes[mesh.value()].name.as_deref());
         let name = name.map_or_else(|| format!("node {node}"), |name| one_line(name, LONGEST_NAME));
         for (index, part) in parts.iter().enumerate() {
             let name = if parts.len() == 1 { name.clone() } else { format!("{name}/{index}") };
             for (instance, &node_from_object) in instances.iter().enumerate() {
                 let name = if instances.len() == 1 { name.clone() } else { format!("{name}#{instance}") };
-                let world_from_object = placed(tree.world_from_node[node], node_from_object);
+                let world_from_object = placed(tree.world_from_node[carrier], node_from_object);
                 if !world_from_object.is_finite() {
                     return broken(format!(
                         "{}: its place in the world is not finite",
@@ -102,7 +135,12 @@ impl<'a> Objects<'a> {
                     masked,
                     surface,
                 });
-                self.placements.push(Placement { node, node_from_object });
+                self.placements.push(Placement { node: carrier, node_from_object });
+                if let Some((skin, influences)) = skin.zip(influences.next()) {
+                    // There are at most 2^24 objects.
+                    let object = self.objects.len() as u32 - 1;
+                    self.bent.push(Bent { object, skin: skin.value(), influences });
+                }
             }
         }
         Ok(())
@@ -112,7 +150,9 @@ impl<'a> Objects<'a> {
     fn parts(&mut self, node: usize, index: Index<FileMesh>) -> Outcome<Vec<Part>> {
         let document = self.document;
         let own_weights = document.root.nodes[node].weights.as_deref();
-        let key = (index, own_weights.map(|_| node));
+        // What is bent is nobody else's.
+        let is_own = own_weights.is_some() || document.root.nodes[node].skin.is_some();
+        let key = (index, is_own.then_some(node));
         if let Some(parts) = self.parts.get(&key) {
             return Ok(parts.clone());
         }
@@ -140,6 +180,30 @@ impl<'a> Objects<'a> {
         }
         self.parts.insert(key, parts.clone());
         Ok(parts)
+    }
+
+    /// What joints carry of each of a mesh's parts.
+    fn influences(
+        &mut self,
+        index: Index<FileMesh>,
+        parts: &[Part],
+        skeleton: &Skeleton,
+    ) -> Outcome<Vec<Vec<Influence>>> {
+        let mesh = element(&self.document.root, index, "mesh")?;
+        let drawn = |primitive: &&Primitive| primitive.attributes.contains_key(&Valid(Semantic::Positions));
+        let drawn = mesh.primitives.iter().enumerate().filter(|(_, primitive)| drawn(primitive));
+        let mut all = Vec::with_capacity(parts.len());
+        for ((at, primitive), part) in drawn.zip(parts) {
+            let vertices = self.meshes[part.mesh as usize].positions.len();
+            self.bent_vertices += vertices;
+            if self.bent_vertices > MOST_BENT_VERTICES {
+                return Err(Fault::TooLarge(format!("its skins bend more than {MOST_BENT_VERTICES} vertices")));
+            }
+            let place = || format!("{}, primitive {at}", label("mesh", index.value(), mesh.name.as_deref()));
+            let read = skins::influences(self.accessors, primitive, vertices, skeleton);
+            all.push(read.map_err(|fault| fault.within(place))?);
+        }
+        Ok(all)
     }
 
     /// Node from object of each instance (EXT_mesh_gpu_instancing).
@@ -180,5 +244,13 @@ impl<'a> Objects<'a> {
                 Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
             })
             .collect()
+    }
+}
+
+/// No one says where an instance of a mesh would be that is wherever its joints are.
+fn instanced_skin() -> Fault {
+    Fault::Unsupported {
+        what: "a skinned mesh with EXT_mesh_gpu_instancing".into(),
+        remedy: "give each instance a node and a skin of its own".into(),
     }
 }

@@ -136,18 +136,7 @@ fn order(root: &Root, parents: &[Option<usize>]) -> Outcome<Vec<usize>> {
 
 fn local(place: &Place) -> Outcome<Local> {
     if let Some(columns) = place.matrix {
-        let column = |index: usize| DVec3::from_slice(&columns[4 * index..]);
-        let last_row = DVec4::new(columns[3], columns[7], columns[11], columns[15]);
-        if !columns.iter().all(|number| number.is_finite()) {
-            return broken("its matrix has a number that is not finite");
-        }
-        if (last_row - DVec4::W).abs().max_element() > LAST_ROW_TOLERANCE {
-            return broken(format!(
-                "its matrix has the last row {last_row}; only 0, 0, 0, 1 moves objects without distortion"
-            ));
-        }
-        let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
-        return Ok(Local::Matrix(DAffine3 { matrix3, translation: column(3) }));
+        return affine(&columns).map(Local::Matrix);
     }
     let translation = place.translation.map_or(DVec3::ZERO, DVec3::from_array);
     let scale = place.scale.map_or(DVec3::ONE, DVec3::from_array);
@@ -156,6 +145,22 @@ fn local(place: &Place) -> Outcome<Local> {
         return broken("its translation, rotation or scale has a number that is not finite");
     }
     Ok(Local::Parts { translation, rotation: unit(rotation)?, scale })
+}
+
+/// A matrix of four columns.
+pub(super) fn affine(columns: &[f64; 16]) -> Outcome<DAffine3> {
+    let column = |index: usize| DVec3::from_slice(&columns[4 * index..]);
+    let last_row = DVec4::new(columns[3], columns[7], columns[11], columns[15]);
+    if !columns.iter().all(|number| number.is_finite()) {
+        return broken("its matrix has a number that is not finite");
+    }
+    if (last_row - DVec4::W).abs().max_element() > LAST_ROW_TOLERANCE {
+        return broken(format!(
+            "its matrix has the last row {last_row}; only 0, 0, 0, 1 moves objects without distortion"
+        ));
+    }
+    let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
+    Ok(DAffine3 { matrix3, translation: column(3) })
 }
 
 /// The rotation with unit length, which files only have to the precision of f32.

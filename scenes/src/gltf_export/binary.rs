@@ -7,6 +7,7 @@ use serde_json::{json, Value};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 
 /// Data and what describes it. Every element is 4 bytes wide, so all is aligned.
@@ -61,6 +62,14 @@ impl Binary {
         let accessor = self.accessor(start, 1, UNSIGNED_BYTE, "VEC4");
         self.accessors[accessor]["normalized"] = true.into();
         accessor
+    }
+
+    /// Joints, four a vertex, each of 16 bits; returns the accessor.
+    pub(super) fn joints(&mut self, joints: impl Iterator<Item = [u32; 4]>) -> usize {
+        let start = self.bytes.len();
+        self.bytes.extend(joints.flatten().flat_map(|joint| (joint as u16).to_le_bytes()));
+        // An element is as wide as two floats.
+        self.accessor(start, 2, UNSIGNED_SHORT, "VEC4")
     }
 
     /// A file within the file; returns the view.

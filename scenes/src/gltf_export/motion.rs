@@ -18,7 +18,7 @@ const RUN_S: f64 = 10.0;
 /// One key: its time in the file, and the time in the scene.
 pub(super) struct Sample {
     time: f32,
-    seconds: f64,
+    pub(super) seconds: f64,
     shot: Option<Shot>,
 }
 
@@ -85,6 +85,8 @@ impl Export {
             scene.motion.transforms_at(sample.seconds, &mut transforms);
             transforms.iter().for_each(|&(object, transform)| keys[object as usize].push(transform));
         }
+        // Joints say where bent objects are.
+        scene.skinned.iter().for_each(|skinned| keys[skinned.object as usize].clear());
         for (object, keys) in keys.iter().enumerate().filter(|(_, keys)| keys.len() == samples.len()) {
             self.parts(object, times, keys);
         }
@@ -99,7 +101,7 @@ impl Export {
         carrier
     }
 
-    fn times(&mut self, samples: &[Sample]) -> usize {
+    pub(super) fn times(&mut self, samples: &[Sample]) -> usize {
         let times: Vec<f32> = samples.iter().map(|sample| sample.time).collect();
         self.binary.times(&times)
     }
@@ -111,9 +113,9 @@ impl Export {
         self.channel(node, "rotation", times, rotations);
     }
 
-    /// Keys of translation, rotation and scale in place of an object's matrix. An object that is flat at some key cannot be
+    /// Keys of translation, rotation and scale in place of a node's matrix. One that is flat at some key cannot be
     /// taken apart; it stays where it is at time 0.
-    fn parts(&mut self, object: usize, times: usize, keys: &[DAffine3]) {
+    pub(super) fn parts(&mut self, object: usize, times: usize, keys: &[DAffine3]) {
         let parts: Vec<(DVec3, DQuat, DVec3)> = keys.iter().map(DAffine3::to_scale_rotation_translation).collect();
         if !parts.iter().all(|(scale, rotation, _)| scale.is_finite() && rotation.is_finite()) {
             return;

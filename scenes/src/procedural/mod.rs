@@ -19,6 +19,7 @@ mod radial_city;
 mod random;
 mod rooms;
 mod satellite;
+mod tentacles;
 mod terrain;
 mod yeahrights;
 
@@ -162,6 +163,13 @@ pub const SCENES: &[Entry] = &[
         about: "boxes of which a third orbit, spin or bob",
         by_detail: false,
         make: moving_boxes::make,
+    },
+    Entry {
+        name: "tentacles",
+        alias: "",
+        about: "240 swaying columns, bent by skeletons, among walls",
+        by_detail: false,
+        make: tentacles::make,
     },
     Entry {
         name: "bad-bounds",

@@ -10,3 +10,4 @@ mod modes;
 mod motion;
 mod mutations;
 mod nodes;
+mod skins;

@@ -59,7 +59,10 @@ impl Model {
     }
 
     pub fn floats(&mut self, kind: &str, numbers: &[f32]) -> usize {
-        let width = ["SCALAR", "VEC2", "VEC3", "VEC4"].iter().position(|&name| name == kind).expect("a type") + 1;
+        let width = match kind {
+            "MAT4" => 16,
+            _ => ["SCALAR", "VEC2", "VEC3", "VEC4"].iter().position(|&name| name == kind).expect("a type") + 1,
+        };
         let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         self.accessor(&bytes, FLOAT, kind, numbers.len() / width)
     }

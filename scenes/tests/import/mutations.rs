@@ -1,7 +1,7 @@
 //! The law that nothing in a file makes the import panic.
 
 use crate::materials::png;
-use crate::model::{import, Model, U16};
+use crate::model::{import, Model, U16, U8};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -42,10 +42,20 @@ fn rich() -> Model {
     let instancing = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": places } } });
     model.json["nodes"] = json!([
         { "children": [1, 2], "rotation": [0, 0, 0, 1] },
-        { "mesh": 0, "skin": 0, "extensions": instancing },
+        { "mesh": 0, "extensions": instancing },
         { "camera": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] },
+        { "mesh": 0, "skin": 0 },
     ]);
-    model.json["skins"] = json!([{ "joints": [2] }]);
+    model.json["scenes"][0]["nodes"] = json!([0, 3]);
+    let identity = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+    let inverse_binds = model.floats("MAT4", &[identity, identity].concat());
+    model.json["skins"] = json!([{ "joints": [2, 0], "inverseBindMatrices": inverse_binds }]);
+    let joints = model.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0], U8, "VEC4", 3);
+    let weights = model.floats("VEC4", &[0.5, 0.5, 0., 0., 1., 0., 0., 0., 1., 0., 0., 0.]);
+    for primitive in model.json["meshes"][0]["primitives"].as_array_mut().expect("a list") {
+        primitive["attributes"]["JOINTS_0"] = joints.into();
+        primitive["attributes"]["WEIGHTS_0"] = weights.into();
+    }
     let (input, output) = (model.floats("SCALAR", &[0., 1.]), model.floats("VEC4", &[0., 0., 0., 1., 0., 1., 0., 0.]));
     model.channel(0, "rotation", "LINEAR", input, output);
     model
@@ -56,6 +66,13 @@ fn check(file: &[u8]) {
         Ok(scene) => {
             let mut places = Vec::new();
             scene.motion.transforms_at(0.3, &mut places);
+            let joints = scene.joints_at(0.3);
+            for skinned in &scene.skinned {
+                assert!(skinned
+                    .rest
+                    .iter()
+                    .all(|vertex| vertex.joints.iter().all(|joint| (*joint as usize) < joints.of(skinned.skin).len())));
+            }
             for object in &scene.objects {
                 assert!((object.mesh as usize) < scene.meshes.len() && object.world_from_object.is_finite());
             }
@@ -79,11 +96,12 @@ fn check(file: &[u8]) {
 #[test]
 fn the_file_to_mutate_is_legal() {
     let scene = rich().scene();
-    // Two places of a mesh of two materials.
-    assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (4, 1, 4));
+    // Two places of a mesh of two materials, and a skin that bends it.
+    assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (6, 1, 6));
+    assert_eq!((scene.skins.len(), scene.skinned.len()), (1, 2));
     let count = |of: fn(&scenes::Object) -> bool| scene.objects.iter().filter(|object| of(object)).count();
     let counts = (count(|o| o.masked), count(|o| o.translucent), count(|o| o.surface.texture.is_some()));
-    assert_eq!(counts, (2, 2, 4), "masked, translucent, textured");
+    assert_eq!(counts, (3, 3, 6), "masked, translucent, textured");
 }
 
 proptest! {

@@ -197,18 +197,6 @@ fn cameras_keep_their_place_and_lens() {
 }
 
 #[test]
-fn skins_without_a_common_root_are_refused() {
-    let mut model = Model::triangle();
-    model.json["nodes"] = json!([{ "mesh": 0, "skin": 0 }, { "children": [2] }, {}, {}]);
-    model.json["skins"] = json!([{ "name": "cloth", "joints": [1, 2] }]);
-    assert_eq!(model.scene().objects.len(), 1);
-    model.json["skins"][0]["joints"] = json!([1, 2, 3]);
-    assert_says(&model.error(), "skin 0 'cloth': its joints 1 and 3 have no common root");
-    model.json["skins"][0]["joints"] = json!([9]);
-    assert_says(&model.error(), "node 9, but the file has 4");
-}
-
-#[test]
 fn a_mesh_without_positions_draws_nothing() {
     let mut model = Model::triangle();
     model.json["meshes"][0]["primitives"][0]["attributes"] = json!({ "NORMAL": 0 });

@@ -4,7 +4,7 @@ use culling::world::twin;
 use culling::World;
 use engine::{Buffer, Placement};
 use harness::{gpu, Random};
-use shaders::types::{Bounds, MovedObject, MovedTransform, Object};
+use shaders::types::{Bounds, JointPlace, MovedObject, MovedTransform, Object, RestVertex};
 
 fn any_object(random: &mut Random) -> Object {
     let three = |random: &mut Random| random.vector().as_vec3().to_array();
@@ -118,4 +118,77 @@ fn a_world_that_does_not_move_skips_moving() {
     let report = f.finish().unwrap();
     assert_eq!(report.skips[0].label, "world/move_objects");
     assert_eq!(report.submissions, 0);
+}
+
+fn unit(random: &mut Random) -> [f32; 3] {
+    random.vector().as_vec3().try_normalize().unwrap_or(glam::Vec3::Y).to_array()
+}
+
+/// Vertices and joints of which all kinds of number are among: large and small ones, and weights that are 0.
+fn any_skin(random: &mut Random, vertices: usize, joints: usize) -> (Vec<RestVertex>, Vec<JointPlace>) {
+    let three = |random: &mut Random| (random.vector() * 10f64.powi(random.below(9) as i32 - 4)).as_vec3().to_array();
+    let vertex = |random: &mut Random| RestVertex {
+        position: three(random),
+        normal: unit(random),
+        joints: std::array::from_fn(|_| random.below(joints) as u32),
+        weights: scenes::weights_of_sum_one(std::array::from_fn(|_| {
+            random.below(4) as f32 * random.vector().x.abs() as f32
+        })),
+    };
+    let rest = (0..vertices).map(|_| vertex(random)).collect();
+    let place = |random: &mut Random| JointPlace {
+        column_x: three(random),
+        column_y: three(random),
+        column_z: three(random),
+        shift: three(random),
+    };
+    (rest, (0..joints).map(|_| place(random)).collect())
+}
+
+fn unfolded([x, y]: [i16; 2]) -> glam::Vec3 {
+    let [x, y] = [x, y].map(|part| f32::from(part) / 32767.0);
+    let (z, fold) = (1.0 - x.abs() - y.abs(), (x.abs() + y.abs() - 1.0).max(0.0));
+    glam::Vec3::new(x - fold.copysign(x), y - fold.copysign(y), z).normalize_or(glam::Vec3::Z)
+}
+
+/// Positions to the bit, normals within the steps of their encoding; no other vertex and no other part of a vertex is touched.
+#[test]
+fn skinning_equals_its_twin() {
+    let gpu = gpu();
+    let mut random = Random::new(63);
+    for (vertex_count, joints, first_word, stride_words) in
+        [(1, 1, 0, 4), (65, 3, 12, 4), (777, 40, 21, 7), (70_000, 9, 4, 7)]
+    {
+        let (rest, places) = any_skin(&mut random, vertex_count, joints);
+        let before: Vec<u32> =
+            (0..first_word + vertex_count * stride_words + 9).map(|_| random.bits() as u32).collect();
+        let on_gpu = (
+            Buffer::with_data(&gpu, "test.rest", &rest, Placement::Storage).unwrap(),
+            Buffer::with_data(&gpu, "test.places", &places, Placement::Upload).unwrap(),
+            Buffer::with_data(&gpu, "test.vertices", &before, Placement::Storage).unwrap(),
+        );
+        let mut f = gpu.frame();
+        let stage = shaders::world::SkinVertices {
+            rest: on_gpu.0.all(),
+            places: on_gpu.1.all(),
+            vertices: on_gpu.2.all(),
+            vertex_count: vertex_count as u32,
+            first_word: first_word as u32,
+            stride_words: stride_words as u32,
+        };
+        f.dispatch(stage, vertex_count as u32);
+        f.finish().unwrap();
+        let mut expected = before;
+        let found = on_gpu.2.read().unwrap();
+        for (index, vertex) in twin::skin_vertices(&rest, &places).into_iter().enumerate() {
+            let at = first_word + index * stride_words;
+            expected[at..at + 3].copy_from_slice(&vertex.position.map(f32::to_bits));
+            let [low, high] = [found[at + 3] & 0xffff, found[at + 3] >> 16].map(|half| half as u16 as i16);
+            let (normal, wanted) = (unfolded([low, high]), unfolded(vertex.normal_snorm16));
+            assert!(normal.distance(wanted) < 3e-4, "vertex {index} of {vertex_count}: {normal} is not {wanted}");
+            expected[at + 3] = found[at + 3];
+        }
+        let wrong = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
+        assert_eq!(wrong, 0, "{vertex_count} vertices");
+    }
 }

@@ -139,3 +139,27 @@ fn motion_of_moving_objects_is_theirs_and_the_cameras() {
         assert_eq!(compare(&pair, &[], &[]).1.is_empty(), later == 0.0, "forgotten object motion");
     }
 }
+
+/// Nobody knows where a pixel of a bent object goes, so that it goes nowhere, and hides nothing; unless no joint has moved.
+#[test]
+fn what_a_skeleton_has_bent_goes_nowhere() {
+    let gpu = gpu();
+    let scene = scenes::open("tentacles", &scenes::SceneOptions { scale: 0.2, ..Default::default() }).unwrap();
+    let at = |seconds: f64| Shot { seconds, ..shot(DVec3::new(1.0, 2.5, 8.0), DVec3::Y, PERSPECTIVE) };
+    for (later, goes) in [(0.3, false), (0.0, true)] {
+        let shots = [at(2.0), at(2.0 + later)];
+        let mut lab = Lab::new(&gpu, &Case::new("tentacles", scene.clone(), shots.to_vec()).sized([320, 180]));
+        let pair = warp(&mut lab, [&shots[0], &shots[1]], stored());
+        let (motions, mut bent, mut others) = (pair.warp.read_motions().unwrap(), 0, 0);
+        for (index, motion) in motions.iter().enumerate().filter(|(index, _)| pair.depth[*index] != 0.0) {
+            if lab.world.is_bent(pair.items[index]) {
+                bent += 1;
+                assert_eq!(motion.depth != 0.0, goes, "a pixel of a bent object, {later} s later: {motion:?}");
+            } else {
+                others += 1;
+                assert_eq!(motion.depth, pair.depth[index], "what does not move");
+            }
+        }
+        assert!(bent > 500 && others > 5000, "{bent} pixels of bent objects, {others} of others");
+    }
+}

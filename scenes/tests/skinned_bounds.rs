@@ -1,0 +1,216 @@
+//! Bounds of what skeletons bend hold every vertex, where the GPU puts it, at every time, in each of the four ways to have them.
+
+mod moving_support;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+use moving_support::{gpu_vertex, node, object, points, times, vector};
+use proptest::prelude::*;
+use scenes::animation::{AnimatedNode, Attachment, Interpolation, Local, NodeAnimation, Track};
+use scenes::{
+    weights_of_sum_one, Aabb, JointPlaces, Mesh, Motion, MovingBounds, MovingBoxes, RestVertex, Scene, Skin,
+    WorldBounds,
+};
+use std::path::Path;
+
+/// The vertex as `world/skin_vertices` bends it.
+fn bent(vertex: &RestVertex, places: &[DAffine3]) -> Vec3 {
+    let parts = [0, 1, 2, 3].map(|part| {
+        let place = &places[vertex.joints[part] as usize];
+        let linear = place.matrix3.as_mat3();
+        let weight = vertex.weights[part];
+        [linear.x_axis, linear.y_axis, linear.z_axis, place.translation.as_vec3()].map(|column| column * weight)
+    });
+    let [x, y, z, shift] =
+        [0, 1, 2, 3].map(|column| parts[0][column] + parts[1][column] + parts[2][column] + parts[3][column]);
+    x * vertex.position.x + y * vertex.position.y + z * vertex.position.z + shift
+}
+
+/// Every vertex that is outside of its box at one of these times, and of the box that its mesh declares for all times.
+fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
+    let bounds = WorldBounds::new(scene);
+    let boxes = MovingBoxes::new(scene, &bounds, mode);
+    let (mut transforms, mut faults) = (Vec::new(), Vec::new());
+    for seconds in times {
+        scene.motion.transforms_at(*seconds, &mut transforms);
+        let joints = scene.joints_at(*seconds);
+        for skinned in &scene.skinned {
+            let moving = transforms.iter().position(|(object, _)| *object == skinned.object).expect("it moves");
+            let (transform, object) = (transforms[moving].1, &scene.objects[skinned.object as usize]);
+            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, &transform), &joints);
+            let always = bounds.of(object.mesh, &transform);
+            let farthest = boxes.farthest(moving).unwrap_or(f64::INFINITY);
+            if transform.translation.abs().max_element() > farthest {
+                faults.push(format!("{mode:?}, {}, at {seconds}: its origin is beyond {farthest}", object.name));
+            }
+            for vertex in &skinned.rest {
+                let vertex = gpu_vertex(&transform, bent(vertex, joints.of(skinned.skin)));
+                for (what, box_) in [("its box", box_), ("the box for all times", always)] {
+                    if !box_.contains(vertex) {
+                        faults.push(format!(
+                            "{mode:?}, {}, at {seconds}: {vertex} is outside of {what}, {box_:?}",
+                            object.name
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    faults
+}
+
+/// An object that a skeleton of all these nodes bends, the first of which is the anchor.
+fn skinned(nodes: Vec<AnimatedNode>, inverse_binds: &[DAffine3], rest: Vec<RestVertex>) -> Scene {
+    let on = Attachment { object: 0, node: 0, node_from_object: DAffine3::IDENTITY };
+    let count = nodes.len();
+    let animation = NodeAnimation::new(nodes, vec![on]).expect("a legal animation");
+    let joints: Vec<(usize, DAffine3)> =
+        (0..count).map(|node| (node, inverse_binds[node % inverse_binds.len()])).collect();
+    let skin = Skin::new(&animation, 0, &joints).expect("a legal skin");
+    let positions: Vec<Vec3> = rest.iter().map(|vertex| vertex.position).collect();
+    let mut scene = Scene {
+        meshes: vec![Mesh { normals: vec![Vec3::Z; positions.len()], positions, ..Mesh::default() }],
+        motion: Motion::Nodes(animation),
+        skins: vec![skin],
+        ..Scene::default()
+    };
+    let mut transforms = Vec::new();
+    scene.motion.transforms_at(0.0, &mut transforms);
+    scene.objects = vec![object("body", 0, transforms[0].1)];
+    scene.bend(0, 0, rest).expect("it can be bent");
+    scene
+}
+
+fn affine() -> impl Strategy<Value = DAffine3> {
+    let far = prop_oneof![vector(2.0), vector(1e5)];
+    (prop::array::uniform9(-1.5..1.5f64), far)
+        .prop_map(|(columns, at)| DAffine3 { matrix3: DMat3::from_cols_array(&columns), translation: at })
+}
+
+/// Vertices on up to four joints each, some of them on one alone.
+fn rest(points: Vec<Vec3>, choices: &[([u32; 4], [f32; 4])], joints: usize) -> Vec<RestVertex> {
+    let vertex = |(position, (on, weights)): (Vec3, &([u32; 4], [f32; 4]))| RestVertex {
+        position,
+        normal: Vec3::Z,
+        joints: on.map(|joint| joint % joints as u32),
+        weights: weights_of_sum_one(*weights),
+    };
+    points.into_iter().zip(choices.iter().cycle()).map(vertex).collect()
+}
+
+/// A tree: each node hangs on one before it.
+fn skeleton() -> impl Strategy<Value = (Vec<AnimatedNode>, Vec<f64>)> {
+    prop::collection::vec((node(), any::<prop::sample::Index>()), 1..6).prop_map(|nodes| {
+        let mut keys = Vec::new();
+        let hang = |(index, ((node, _), parent)): (usize, ((AnimatedNode, bool), prop::sample::Index))| {
+            let ends = [
+                node.translation.as_ref().map(Track::duration_s),
+                node.rotation.as_ref().map(Track::duration_s),
+                node.scale.as_ref().map(Track::duration_s),
+            ];
+            keys.extend(ends.into_iter().flatten().flat_map(|(first, last)| [first, last]));
+            AnimatedNode { parent: (index > 0).then(|| parent.index(index)), ..node }
+        };
+        let nodes = nodes.into_iter().enumerate().map(hang).collect();
+        (nodes, keys)
+    })
+}
+
+fn choices() -> impl Strategy<Value = Vec<([u32; 4], [f32; 4])>> {
+    let weight = prop_oneof![0.0..1.0f32, Just(0.0f32), Just(1.0f32)];
+    prop::collection::vec((prop::array::uniform4(0..6u32), prop::array::uniform4(weight)), 1..6)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn what_a_skeleton_bends_stays_in_its_box(
+        (nodes, keys) in skeleton(), inverse_binds in prop::collection::vec(affine(), 1..4), points in points(), choices in choices(),
+        by_chance in prop::collection::vec(0.0..1.0f64, 30),
+    ) {
+        let joints = nodes.len();
+        let scene = skinned(nodes, &inverse_binds, rest(points, &choices, joints));
+        for mode in MovingBounds::ALL {
+            let faults = outside(&scene, mode, &times(&keys, &by_chance));
+            prop_assert!(faults.is_empty(), "{}", faults.join("\n"));
+        }
+    }
+}
+
+/// An arm of two bones along x, the second of which bends by a third of a turn in two seconds.
+fn arm() -> Scene {
+    let node = |parent: Option<usize>, at: f64, turns: Vec<DQuat>| AnimatedNode {
+        parent,
+        world_from_root: DAffine3::IDENTITY,
+        local: Local::Parts { translation: DVec3::X * at, rotation: DQuat::IDENTITY, scale: DVec3::ONE },
+        translation: None,
+        rotation: (!turns.is_empty())
+            .then(|| Track::new(Interpolation::Linear, vec![0.0, 2.0], turns).expect("a legal track")),
+        scale: None,
+    };
+    let bend = vec![DQuat::IDENTITY, DQuat::from_rotation_z(std::f64::consts::TAU / 3.0)];
+    let vertices = [(0.0, [1.0, 0.0]), (1.0, [0.5, 0.5]), (2.0, [0.0, 1.0])];
+    let rest = vertices.map(|(x, [upper, lower])| RestVertex {
+        position: Vec3::X * x,
+        normal: Vec3::Z,
+        joints: [0, 1, 0, 0],
+        weights: [upper, lower, 0.0, 0.0],
+    });
+    let inverse_binds = [DAffine3::IDENTITY, DAffine3::from_translation(-DVec3::X)];
+    skinned(vec![node(None, 0.0, Vec::new()), node(Some(0), 1.0, bend)], &inverse_binds, rest.to_vec())
+}
+
+/// What this is against: the box of the mesh at rest, moved with its object as that of any other; and boxes at the keys alone.
+#[test]
+fn bounds_of_the_rest_pose_are_caught() {
+    let scene = arm();
+    let mut rigid = scene.clone();
+    (rigid.skinned, rigid.skins) = (Vec::new(), Vec::new());
+    rigid.meshes[0].declared_bounds = None;
+    let rests = WorldBounds::new(&rigid);
+    let hand = |seconds: f64| bent(&scene.skinned[0].rest[2], scene.joints_at(seconds).of(0)).as_dvec3();
+    let (bent_up, keys) = (hand(1.2), Aabb::from_points([0.0, 2.0].map(hand)).union(Aabb::from_points([DVec3::ZERO])));
+    let frozen = MovingBoxes::new(&rigid, &rests, MovingBounds::Union);
+    let frozen = frozen.at(0, 1.2, &rests, (0, &DAffine3::IDENTITY), &JointPlaces::default());
+    assert!(!frozen.contains(bent_up), "{bent_up}: {frozen:?}");
+    assert!(!keys.contains(bent_up), "{bent_up}: {keys:?}");
+    for mode in MovingBounds::ALL {
+        assert_eq!(outside(&scene, mode, &[0.0, 0.7, 1.2, 2.0, 9.0]), Vec::<String>::new());
+    }
+}
+
+/// A skeleton's boxes are as small as its joints': no sphere of all that it could do.
+#[test]
+fn boxes_of_bent_objects_are_tight() {
+    let scene = arm();
+    let bounds = WorldBounds::new(&scene);
+    let at = |mode, seconds: f64| {
+        let joints = scene.joints_at(seconds);
+        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &DAffine3::IDENTITY), &joints)
+    };
+    let near = |box_: Aabb, [x, y]: [f64; 2], [u, v]: [f64; 2], slack: f64| {
+        let wanted = Aabb { min: DVec3::new(x, y, 0.0), max: DVec3::new(u, v, 0.0) };
+        assert!((box_.min - wanted.min).abs().max_element() < slack, "{box_:?} {wanted:?}");
+        assert!((box_.max - wanted.max).abs().max_element() < slack, "{box_:?} {wanted:?}");
+    };
+    near(at(MovingBounds::PerFrame, 0.0), [0.0, 0.0], [2.0, 0.0], 1e-5);
+    let third = 3f64.sqrt() / 2.0;
+    near(at(MovingBounds::PerFrame, 2.0), [0.0, 0.0], [1.0, third], 1e-5);
+    // The hand goes round the elbow at (1, 0), from (2, 0) by (1, 1) to (0.5, 0.87).
+    near(at(MovingBounds::Union, 1.0), [0.0, 0.0], [2.0, 1.0], 0.05);
+    near(at(MovingBounds::InPlace, 1.0), [0.0, 0.0], [2.0, 1.0], 0.05);
+    near(at(MovingBounds::PerAnimation, 1.0), [0.0, 0.0], [2.0, 1.0], 0.05);
+    // Once it is over, it is over.
+    near(at(MovingBounds::PerAnimation, 3.0), [0.0, 0.0], [1.0, third], 1e-5);
+}
+
+/// The glTF tutorial's skin, through all of its motion.
+#[test]
+fn what_a_file_bends_stays_in_its_box() {
+    let scene = scenes::import(Path::new("/usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf"))
+        .expect("Debian's assimp-testmodels");
+    let times: Vec<f64> = (0..200).map(|step| -0.2 + f64::from(step) * 0.03).collect();
+    for mode in MovingBounds::ALL {
+        assert_eq!(outside(&scene, mode, &times), Vec::<String>::new());
+    }
+}
