@@ -1,20 +1,20 @@
 //! One frame: recorded stage by stage, run, timed.
 
-use crate::depth::DepthFormat;
 use crate::features::Extra;
 use crate::gpu::{Gpu, Vulkan};
 use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
-use crate::target::{Format, Target};
+use crate::target::Target;
 use crate::timers::{self, Queries, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
-use shaders::{engine, Bound, BufferRef, ComputeStage, GraphicsStage, ImageRef, Stage};
+use shaders::{engine, Bound, BufferRef, ComputeStage, GraphicsStage};
 use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+mod kept;
 mod occlusion;
 mod shapes;
 
@@ -222,45 +222,6 @@ impl Frame {
     /// Copies a buffer to another one at least as long.
     pub fn copy<T: Pod>(&mut self, label: &str, from: BufferRef<T>, to: BufferRef<T>) {
         self.recorder.push(label, Op::Copy { from: from.into(), to: to.into() });
-    }
-
-    /// Keeps the target's depth beyond the frame: a float a pixel, reversed, row by row from the top.
-    ///
-    /// # Panics
-    /// If the buffer has no room for it.
-    pub fn copy_depth(&mut self, label: &str, target: &Target, to: &Buffer<f32>) {
-        let depth = self.gpu.depth();
-        if depth == DepthFormat::ReversedD32 {
-            self.copy_image(label, target.depth, Format::Depth, target.size, to);
-            return;
-        }
-        let [width, height] = target.size;
-        assert!(
-            to.len() >= width as usize * height as usize,
-            "{label}: {} words for {width}x{height} texels",
-            to.len()
-        );
-        let constants = engine::CopyDepthConstants { standard_depth: depth.is_standard() };
-        let stage = engine::CopyDepth { depth: target.depth, copied: to.all(), size_px: target.size, constants };
-        let groups = lower::folded((width * height).div_ceil(engine::CopyDepth::INFO.local_size[0]));
-        self.recorder.push(label, Op::Dispatch { stage: stage.bind(), groups });
-    }
-
-    /// Keeps the target's item buffer beyond the frame: an object a pixel, row by row from the top; nothing if the target
-    /// has none.
-    ///
-    /// # Panics
-    /// If the buffer has no room for it.
-    pub fn copy_items(&mut self, label: &str, target: &Target, to: &Buffer<u32>) {
-        if let Some(items) = target.item {
-            self.copy_image(label, items, Format::Item, target.size, to);
-        }
-    }
-
-    fn copy_image<T: Pod>(&mut self, label: &str, from: ImageRef, format: Format, size: [u32; 2], to: &Buffer<T>) {
-        let texels = size[0] as usize * size[1] as usize;
-        assert!(to.len() >= texels, "{label}: {} words for {texels} texels", to.len());
-        self.recorder.push(label, Op::CopyImage { from, format, size, to: to.all().into() });
     }
 
     /// Notes that a stage was not needed.
