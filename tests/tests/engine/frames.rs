@@ -140,7 +140,7 @@ fn an_empty_frame_is_no_error() {
 }
 
 /// A frame with a heavy drawing and then a light dispatch.
-fn heavy_and_light(gpu: &Gpu) -> engine::FrameReport {
+fn heavy_and_light(gpu: &Gpu) -> FrameReport {
     let size = [512; 2];
     let colour = Image::new(gpu, "test.colour", Format::Colour, size).unwrap();
     let depth = Image::new(gpu, "test.depth", Format::Depth, size).unwrap();
