@@ -1,10 +1,12 @@
 //! What must hold for every exact method and every world. Each law returns its faults.
 
 mod drawn;
+mod planted;
 
 pub use drawn::{
     what_a_wall_hides_after_a_cut_is_culled, what_a_wall_hides_is_culled, what_is_no_longer_seen_is_no_longer_drawn,
 };
+pub use planted::{a_defect_alone_loses_objects, Make};
 
 use crate::lab::{error_of, Lab, Subject, Take};
 use crate::{Case, Random};

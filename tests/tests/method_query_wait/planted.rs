@@ -3,9 +3,10 @@
 use super::{gpu, laws, worlds};
 use culling::boxes::BoxShape;
 use culling::roc::twin::selection;
-use culling::{DrawList, Method, Options, Setup, View, World};
+use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, IndexedIndirect, OcclusionQueries, Placement, Queried, Target};
-use harness::{assert_caught, assert_none, Subject};
+use harness::laws::Make;
+use harness::Case;
 use shaders::queries;
 use shaders::types::{Bounds, DrawCommand, SELECT_SHOWN, SELECT_TESTED};
 
@@ -118,23 +119,31 @@ impl Method for Broken {
     }
 }
 
-macro_rules! caught {
-    ($name:ident, $defect:ident, $case:expr) => {
-        #[test]
-        fn $name() {
-            let gpu = gpu();
-            let subject = |make| Subject { options: Options::new("broken", culling::roc::OPTIONS), make };
-            let case = $case;
-            let sound = subject(|setup| broken(setup, Defect::Nothing));
-            assert_none(&laws::no_visible_object_is_culled(&gpu, &sound, &case));
-            let wrong = subject(|setup| broken(setup, Defect::$defect));
-            assert_caught(&laws::no_visible_object_is_culled(&gpu, &wrong, &case), "false negatives");
-        }
-    };
+fn caught(wrong: Make, case: &Case) {
+    laws::a_defect_alone_loses_objects(&gpu(), |setup| broken(setup, Defect::Nothing), wrong, case);
 }
 
-caught!(shifted_answers_are_caught, AnswersShifted, worlds::walled(100));
-caught!(stale_answers_are_caught, StaleAnswers, worlds::walled(150));
-caught!(shrunk_boxes_are_caught, ShrunkBoxes, worlds::walled(100));
-caught!(boxes_asked_at_the_near_plane_are_caught, NearCrossingAsked, worlds::special::stepping_into_boxes());
-caught!(a_query_that_is_not_asked_is_caught, LastNotAsked, worlds::walled(101));
+#[test]
+fn shifted_answers_are_caught() {
+    caught(|setup| broken(setup, Defect::AnswersShifted), &worlds::walled(100));
+}
+
+#[test]
+fn stale_answers_are_caught() {
+    caught(|setup| broken(setup, Defect::StaleAnswers), &worlds::walled(150));
+}
+
+#[test]
+fn shrunk_boxes_are_caught() {
+    caught(|setup| broken(setup, Defect::ShrunkBoxes), &worlds::walled(100));
+}
+
+#[test]
+fn boxes_asked_at_the_near_plane_are_caught() {
+    caught(|setup| broken(setup, Defect::NearCrossingAsked), &worlds::special::stepping_into_boxes());
+}
+
+#[test]
+fn a_query_that_is_not_asked_is_caught() {
+    caught(|setup| broken(setup, Defect::LastNotAsked), &worlds::walled(101));
+}

@@ -2,11 +2,12 @@
 
 use culling::boxes::BoxShape;
 use culling::roc::twin::selection;
-use culling::{DrawList, Method, Options, Setup, View, World};
+use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, IndexedIndirect, OcclusionQueries, Placement, Queried, Target};
 use glam::{DVec3, Vec3};
+use harness::laws::{self, Make};
 use harness::worlds::Maker;
-use harness::{assert_caught, assert_none, gpu, laws, worlds, Case, Subject};
+use harness::{gpu, worlds, Case};
 use scenes::{CameraPath, SceneOptions, Topology};
 use shaders::queries;
 use shaders::types::{Bounds, DrawCommand, SELECT_SHOWN, SELECT_TESTED};
@@ -164,22 +165,26 @@ impl Method for Broken {
     }
 }
 
-macro_rules! caught {
-    ($name:ident, $defect:ident, $case:expr) => {
-        #[test]
-        fn $name() {
-            let gpu = gpu();
-            let subject = |make| Subject { options: Options::new("broken", culling::roc::OPTIONS), make };
-            let case = $case;
-            let sound = subject(|setup| broken(setup, Defect::Nothing));
-            assert_none(&laws::no_visible_object_is_culled(&gpu, &sound, &case));
-            let wrong = subject(|setup| broken(setup, Defect::$defect));
-            assert_caught(&laws::no_visible_object_is_culled(&gpu, &wrong, &case), "false negatives");
-        }
-    };
+fn caught(wrong: Make, case: &Case) {
+    laws::a_defect_alone_loses_objects(&gpu(), |setup| broken(setup, Defect::Nothing), wrong, case);
 }
 
-caught!(a_forgotten_box_is_caught, LastBoxForgotten, posts());
-caught!(shrunk_boxes_are_caught, ShrunkBoxes, worlds::walled(100));
-caught!(boxes_that_stay_behind_are_caught, BoxesStayBehind, moving());
-caught!(the_place_of_one_box_alone_is_caught, PlaceOfFirstBox, posts());
+#[test]
+fn a_forgotten_box_is_caught() {
+    caught(|setup| broken(setup, Defect::LastBoxForgotten), &posts());
+}
+
+#[test]
+fn shrunk_boxes_are_caught() {
+    caught(|setup| broken(setup, Defect::ShrunkBoxes), &worlds::walled(100));
+}
+
+#[test]
+fn boxes_that_stay_behind_are_caught() {
+    caught(|setup| broken(setup, Defect::BoxesStayBehind), &moving());
+}
+
+#[test]
+fn the_place_of_one_box_alone_is_caught() {
+    caught(|setup| broken(setup, Defect::PlaceOfFirstBox), &posts());
+}
