@@ -187,6 +187,8 @@ impl Chooser {
             Some(settled) if !self.is_outdone(pace) || self.outdone[pace as usize] + 1 < PATIENCE => {
                 choice(settled, Reason::Kept)
             }
+            // To begin with what needs a last frame takes long: it must be worth it.
+            None if !self.outdoes(best, 0, pace) => choice(0, Reason::Cheaper),
             _ => choice(best, Reason::Cheaper),
         }
     }
@@ -235,13 +237,14 @@ impl Chooser {
         }
         self.drifted = if has_drifted { self.drifted + 1 } else { 0 };
         if self.drifted >= DRIFT_FRAMES {
-            self.try_all_again(pace, now);
+            self.try_all_again(pace, now.max(tried));
         } else {
             self.try_one_again(pace, candidate, now);
         }
     }
 
-    /// Times have drifted: what is known of the others at this pace is old, unless it was hopeless.
+    /// Times have drifted: what is known of the others at this pace is old, unless it was hopeless: beside what the best took then, if the device
+    /// has grown faster since, or beside what it takes now.
     fn try_all_again(&mut self, pace: Pace, best_ms: f64) {
         self.drifted = 0;
         for (memory, costs) in self.memories.iter().zip(&mut self.costs) {
@@ -284,8 +287,13 @@ impl Chooser {
 
     /// Another candidate is clearly cheaper than the one that is settled on.
     fn is_outdone(&self, pace: Pace) -> bool {
+        self.settled[pace as usize].is_some_and(|settled| self.outdoes(self.best(pace), settled, pace))
+    }
+
+    /// One candidate is clearly cheaper than another, as far as is known.
+    fn outdoes(&self, one: usize, other: usize, pace: Pace) -> bool {
         let time = |candidate: usize| self.cost(candidate, pace).ms().unwrap_or(f64::INFINITY);
-        self.settled[pace as usize].is_some_and(|settled| time(self.best(pace)) < CLEARLY * time(settled))
+        time(one) < CLEARLY * time(other)
     }
 
     fn worth_trying(&self, pace: Pace) -> impl Iterator<Item = usize> + '_ {
