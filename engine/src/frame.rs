@@ -4,7 +4,7 @@ use crate::features::Extra;
 use crate::gpu::{Gpu, Vulkan};
 use crate::lost;
 use crate::lower::{self, Lowered};
-use crate::recorder::{IndexedIndirect, Op, Recorded, Recorder};
+use crate::recorder::{apart, IndexedIndirect, Op, Recorded, Recorder};
 use crate::target::Target;
 use crate::timers::{self, Queries, TimerMode};
 use crate::{Buffer, Error, Result};
@@ -181,7 +181,10 @@ impl Frame {
                 self.clear_tail(count, &draw);
             }
         }
-        self.recorder.push(S::INFO.name, Op::Draw { stage: stage.bind(), draw, target: *target });
+        let stage = stage.bind();
+        for draw in apart(&stage, draw, self.gpu.has(Extra::MultiDrawIndirect)) {
+            self.recorder.push(S::INFO.name, Op::Draw { stage: stage.clone(), draw, target: *target });
+        }
     }
 
     fn clear_tail(&mut self, count: BufferRef<u32>, draw: &IndexedIndirect) {

@@ -5,8 +5,10 @@ use crate::target::{Format, Target};
 use shaders::{Access, Bound, BoundStage, BufferRef, ImageRef, ResourceId};
 use std::fmt::Write;
 
+mod apart;
 mod samples;
 
+pub(crate) use apart::apart;
 use samples::Unresolved;
 
 /// How indices form primitives.

@@ -30,7 +30,7 @@ fn blocks_are_measured_and_tested_as_the_twins_say() {
     let mut random = Random::new(1301);
     let (mut all_blocks, mut differ, mut due_blocks) = (0, 0, 0);
     let mut by_fronts = 0;
-    for (name, input) in Input::all(&mut random, &gpu) {
+    for (name, input) in Input::all(&mut random) {
         let views = StepView { object_count: (BOXES * BLOCK_OBJECTS as usize) as u32, ..input.all };
         let (bounds, views) = (stored(&gpu, &input.bounds), stored(&gpu, &[views]));
         let (levels, texels) = (stored(&gpu, &input.levels), stored(&gpu, &input.texels));
@@ -110,7 +110,7 @@ fn an_object_is_due_in_a_step_of_its_block() {
     let gpu = gpu();
     let mut random = Random::new(77);
     for (name, projection) in special_projections() {
-        let mut input = Input::by_chance(&mut random, &gpu, projection);
+        let mut input = Input::by_chance(&mut random, gpu.snap_px(), projection);
         input.all.range_count = MOST_STEP_RANGES;
         let (spans, reach) = twin::measure_blocks(&input.bounds, &input.all);
         let range = |depth| reach.range_of(depth, &input.all);
@@ -162,7 +162,7 @@ fn objects_are_found_and_their_commands_written_as_the_twins_say() {
     let blocks = BOXES.div_ceil(BLOCK_OBJECTS as usize);
     let (mut all_objects, mut differ, mut outcomes) = (0, 0, [0usize; 3]);
     let mut by_fronts = 0;
-    for (number, (name, mut input)) in Input::all(&mut random, &gpu).into_iter().enumerate() {
+    for (number, (name, mut input)) in Input::all(&mut random).into_iter().enumerate() {
         input.all.block_count = blocks as u32;
         let reach = twin::measure_blocks(&input.bounds, &input.all).1;
         let (step, behind, fronts) = match name {
