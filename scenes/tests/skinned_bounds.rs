@@ -214,3 +214,33 @@ fn what_a_file_bends_stays_in_its_box() {
         assert_eq!(outside(&scene, mode, &times), Vec::<String>::new());
     }
 }
+
+#[test]
+fn skins_without_a_meaning_are_refused() {
+    assert!(arm().check().is_ok());
+    type Change = fn(&mut Scene);
+    let changes: [(Change, &str); 9] = [
+        (|scene| scene.objects.push(object("other", 0, DAffine3::IDENTITY)), "another object has too"),
+        (|scene| scene.skinned.push(scene.skinned[0].clone()), "it is bent twice, or out of order"),
+        (|scene| scene.skinned[0].skin = 3, "it has skin 3, but the scene has 1"),
+        (|scene| scene.skinned[0].rest[1].joints[2] = 9, "vertex 1: it has joint 9, but its skin has 2"),
+        (|scene| scene.skinned[0].rest[1].weights = [0.5, 0.25, 0.0, 0.0], "do not add up to 1"),
+        (|scene| scene.skinned[0].rest[1].weights = [1.5, -0.5, 0.0, 0.0], "are negative"),
+        (|scene| scene.skinned[0].rest.truncate(2), "2 vertices at rest for the 3 of its mesh"),
+        (|scene| scene.meshes[0].declared_bounds = None, "declares no box for all its shapes"),
+        (|scene| scene.motion = Motion::Still, "nothing moves its skeleton"),
+    ];
+    for (index, (change, text)) in changes.into_iter().enumerate() {
+        let mut scene = arm();
+        change(&mut scene);
+        let message = scene.check().expect_err("it has no meaning").to_string();
+        assert!(message.starts_with("object 'body': ") && message.contains(text), "change {index}: {message}");
+    }
+    let Motion::Nodes(nodes) = arm().motion else { panic!("an arm has bones") };
+    let refused = |anchor: usize, joint: (usize, DAffine3)| Skin::new(&nodes, anchor, &[joint]).unwrap_err();
+    assert_eq!(refused(2, (0, DAffine3::IDENTITY)), "its anchor is node 2 of 2");
+    assert_eq!(refused(1, (0, DAffine3::IDENTITY)), "joint 0 does not hang below the anchor");
+    assert_eq!(refused(0, (5, DAffine3::IDENTITY)), "joint 0 is node 5 of 2");
+    let infinite = DAffine3::from_translation(DVec3::INFINITY);
+    assert_eq!(refused(0, (1, infinite)), "the inverse bind matrix of joint 0 is not finite");
+}
