@@ -82,13 +82,13 @@ fn late_uploads(gpu: &Gpu, subject: &Subject, case: &Case) -> Vec<String> {
     late.map(|(frame, uploads)| format!("{place}, frame {frame}: {uploads} uploads")).collect()
 }
 
-/// Boxes on their ways, each frame a little later.
-fn moving() -> Case {
-    let scene = scenes::open("moving-boxes", &SceneOptions { scale: 0.2, seed: 1, ..SceneOptions::default() }).unwrap();
+/// A scene in which something moves or bends, each frame a little later.
+fn moving(name: &str) -> Case {
+    let scene = scenes::open(name, &SceneOptions { scale: 0.2, seed: 1, ..SceneOptions::default() }).unwrap();
     let camera = &scene.cameras[0];
     let mut shots = worlds::wander(camera.pose.position, glam::DVec3::ZERO, camera.projection);
     shots.iter_mut().enumerate().for_each(|(frame, shot)| shot.seconds = 0.1 * frame as f64);
-    Case::new("moving-boxes", scene, shots)
+    Case::new(name, scene, shots)
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn no_frame_waits_for_an_upload_of_its_own() {
     let _turn = gpu();
     let gpu = open(Extra::MappedMemory);
     let mut faults = Vec::new();
-    for case in [worlds::walled(200), moving()] {
+    for case in [worlds::walled(200), moving("moving-boxes"), moving("tentacles")] {
         let subjects = culling::METHODS.iter().map(|entry| Subject::named(entry.id));
         faults.extend(subjects.flat_map(|subject| late_uploads(&gpu, &subject, &case)));
     }
