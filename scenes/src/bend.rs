@@ -5,13 +5,18 @@ use crate::model::{Mesh, Scene, Topology};
 use crate::moving::bent_always;
 use crate::skin::{bent, JointPlaces, RestVertex, Skinned, MOST_OFF_ONE};
 use glam::{DAffine3, DVec3};
+use std::borrow::Cow;
 
 /// Puts the vertices of a mesh where joints put them.
 pub(crate) fn bend_mesh(mesh: &mut Mesh, rest: &[RestVertex], places: &[DAffine3]) {
+    bend_vertices(mesh, rest, places);
+    turn_round(mesh, places);
+}
+
+fn bend_vertices(mesh: &mut Mesh, rest: &[RestVertex], places: &[DAffine3]) {
     let vertices = rest.iter().map(|vertex| bent(vertex, places));
     let unit = |normal: DVec3| normal.try_normalize().unwrap_or(DVec3::Z).as_vec3();
     (mesh.positions, mesh.normals) = vertices.map(|(position, normal)| (position.as_vec3(), unit(normal))).unzip();
-    turn_round(mesh, places);
 }
 
 /// Winds triangles the other way round where joints mirror the mesh at rest, and those of a mesh that was mirrored back.
@@ -26,6 +31,18 @@ impl Scene {
     /// Where the joints of its skins are at a time. Costs nothing without skins.
     pub fn joints_at(&self, seconds: f64) -> JointPlaces {
         JointPlaces::at(&self.motion, &self.skins, seconds)
+    }
+
+    /// Its meshes, those that skeletons bend in the shapes of a time.
+    pub fn meshes_at(&self, seconds: f64) -> Cow<'_, [Mesh]> {
+        if self.skinned.is_empty() {
+            return Cow::Borrowed(&self.meshes);
+        }
+        let (joints, mut meshes) = (self.joints_at(seconds), self.meshes.clone());
+        for Skinned { object, skin, rest } in &self.skinned {
+            bend_vertices(&mut meshes[self.objects[*object as usize].mesh as usize], rest, joints.of(*skin));
+        }
+        Cow::Owned(meshes)
     }
 
     /// Hands an object over to a skeleton, whose anchor it must hang on: from now on its mesh, which must be its own, is bent. The mesh gets the shape of

@@ -3,6 +3,7 @@
 
 use culling::world::twin;
 use culling::{Shading, World};
+use glam::Vec3;
 use harness::sessions::faults;
 use harness::{assert_caught, assert_none, gpu};
 use scenes::animation::{AnimatedNode, Local, NodeAnimation};
@@ -134,6 +135,19 @@ fn assert_bent(world: &World, rest: &[ObjectsVertex], place: &str) {
     }
 }
 
+/// Vertices that skeletons bend, in the order of their meshes.
+fn host_shapes(scene: &Scene, seconds: f64) -> Vec<Vec3> {
+    let mut bent: Vec<_> = scene.skinned.iter().map(|it| scene.objects[it.object as usize].mesh as usize).collect();
+    bent.sort_unstable();
+    let meshes = scene.meshes_at(seconds);
+    bent.iter().flat_map(|mesh| meshes[*mesh].positions.iter().copied()).collect()
+}
+
+fn device_shapes(world: &World) -> Vec<Vec3> {
+    let first = world.bent_vertices().unwrap().unwrap().first;
+    world.read_vertices().unwrap()[first..].iter().map(|vertex| vertex.position.into()).collect()
+}
+
 #[test]
 fn the_device_has_the_shapes_of_the_host() {
     let gpu = gpu();
@@ -149,6 +163,10 @@ fn the_device_has_the_shapes_of_the_host() {
             f.finish().unwrap();
             assert_bent(&world, &rest, &format!("{}, {seconds}", scene.name));
             assert!(world.read_meshes().unwrap().2 == rest, "the shapes of time 0 have changed");
+            let (host, device) = (host_shapes(&scene, seconds), device_shapes(&world));
+            assert_eq!(host.len(), device.len());
+            let off = host.iter().zip(&device).map(|(host, device)| host.distance(*device)).fold(0.0, f32::max);
+            assert!(off < 1e-4, "{}, {seconds}: {off} m from Scene::meshes_at", scene.name);
         }
     }
 }

@@ -7,7 +7,7 @@ use culling::hzb::fronts::Fronts;
 use culling::hzb::twin::{footprint_of, Footprint};
 use culling::View;
 use glam::{DAffine3, DVec2, DVec3};
-use scenes::{Mesh, Object, Scene, Shot};
+use scenes::{Mesh, Object, Shot};
 use shaders::types::{Bounds, CullView, DEPTH_SLACK_PER_PIXEL, ITEM_NONE, OBJECT_WIDE_RASTER};
 
 /// Primitives lower than this are outside the raster conditions that depths are promised for (`include/footprint.glsl`).
@@ -80,6 +80,7 @@ pub fn covered(lab: &mut Lab, shot: &Shot, shape: impl Fn(&mut Bounds, &mut Cull
     let mut places = Vec::new();
     lab.scene.motion.transforms_at(shot.seconds, &mut places);
     let moved: std::collections::HashMap<u32, DAffine3> = places.into_iter().collect();
+    let meshes = lab.scene.meshes_at(shot.seconds);
     let mut prints = std::collections::HashMap::new();
     let images = truth.images();
     for (pixel, (item, depth)) in images.items.iter().zip(&images.depth).enumerate() {
@@ -90,7 +91,7 @@ pub fn covered(lab: &mut Lab, shot: &Shot, shape: impl Fn(&mut Bounds, &mut Cull
             let index = lab.world.scene_object(*item as usize);
             let mut object = lab.scene.objects[index].clone();
             object.world_from_object = *moved.get(&(index as u32)).unwrap_or(&object.world_from_object);
-            Print::new(bounds[*item as usize], &view, &lab.scene, &object, &shape)
+            Print::new(bounds[*item as usize], &view, &meshes, &object, &shape)
         });
         let at = [pixel as u32 % images.width, pixel as u32 / images.width];
         seen.pixel(print, at, *depth, lab.gpu.snap_px());
@@ -121,7 +122,7 @@ impl Print {
     fn new(
         mut bound: Bounds,
         view: &View,
-        scene: &Scene,
+        meshes: &[Mesh],
         object: &Object,
         shape: &impl Fn(&mut Bounds, &mut CullView),
     ) -> Self {
@@ -134,7 +135,7 @@ impl Print {
         // The slack is linear in the grid, unless it was cut off at the near plane: a coarse grid tells the range.
         let coarser = footprint_of(&clip, &CullView { snap_px: 1e-3, ..cull }, bare_flags);
         let range = (coarser.nearest - unsnapped.nearest) / (DEPTH_SLACK_PER_PIXEL * 1e-3);
-        let primitives = primitives(view, scene, object);
+        let primitives = primitives(view, meshes, object);
         let low = primitives.iter().map(|primitive| primitive.low).fold(DVec2::INFINITY, DVec2::min);
         let high = primitives.iter().map(|primitive| primitive.high).fold(DVec2::NEG_INFINITY, DVec2::max);
         let height_px = primitives.iter().map(|primitive| primitive.height_px).fold(f64::INFINITY, f64::min);
@@ -213,7 +214,7 @@ fn plane_at(a: DVec3, b: DVec3, c: DVec3, at: DVec2) -> f64 {
 }
 
 /// What an object draws.
-fn primitives(view: &View, scene: &Scene, object: &Object) -> Vec<Primitive> {
+fn primitives(view: &View, meshes: &[Mesh], object: &Object) -> Vec<Primitive> {
     let size = DVec3::new(f64::from(view.size[0]), f64::from(view.size[1]), 1.0);
     let vertex = |position: &glam::Vec3| {
         let relative: DVec3 = object.world_from_object.transform_point3(position.as_dvec3()) - view.pose.position;
@@ -221,7 +222,7 @@ fn primitives(view: &View, scene: &Scene, object: &Object) -> Vec<Primitive> {
         let projected = clip.truncate() / clip.w;
         (projected.truncate() * 0.5 + 0.5).extend(projected.z) * size
     };
-    let Mesh { positions, indices, topology, .. } = &scene.meshes[object.mesh as usize];
+    let Mesh { positions, indices, topology, .. } = &meshes[object.mesh as usize];
     let corners: Vec<DVec3> = positions.iter().map(vertex).collect();
     let faces = indices.chunks([3, 2, 1][*topology as usize]);
     faces

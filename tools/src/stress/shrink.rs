@@ -62,8 +62,11 @@ pub(super) fn shortened(drill: &Drill, still_fails: &mut dyn FnMut(&Drill) -> bo
     best
 }
 
-/// Without all objects that are not needed, by halves, quarters and so on.
+/// Without all objects that are not needed, by halves, quarters and so on. Worlds of skeletons stay whole.
 pub(super) fn thinned(mut best: Drill, still_fails: &mut dyn FnMut(&Drill) -> bool) -> Drill {
+    if !best.case.scene.skinned.is_empty() {
+        return best;
+    }
     let mut step = best.case.scene.objects.len().div_ceil(2);
     while step > 0 {
         let mut first = 0;

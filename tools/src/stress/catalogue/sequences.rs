@@ -61,6 +61,20 @@ pub fn moving(random: &mut Random, bodies: usize) -> Drill {
     case.filmed(shots).into()
 }
 
+/// Skeletons bend bodies among walls, which stay as they are for a frame, go on, and are elsewhere at once.
+pub fn bending(random: &mut Random, bodies: usize) -> Drill {
+    let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == "tentacles").unwrap();
+    // At scale 1 it has 240 bodies, and a wall for every second.
+    let scale = bodies as f64 / 360.0;
+    let scene = (entry.make)(&scenes::SceneOptions { scale, seed: random.bits(), ..Default::default() });
+    let side = 20.0 * (scale * random.range(0.3, 1.0)).sqrt();
+    let eye = DVec3::new(random.range(-0.6, 0.6) * side, random.range(0.5, 4.0), side);
+    let case = Case::new("", scene, wander(eye, random.vector() * 0.2 * side + DVec3::Y, PERSPECTIVE));
+    let start = random.range(0.0, 16.0);
+    let shots = at_times(&case, &[0.0, 0.0, 0.02, 0.04, 0.5, 0.5, 7.0, 7.01].map(|later| start + later));
+    case.filmed(shots).into()
+}
+
 /// Bodies swap places at once: who was hidden stands where one showed, and back. What was known of a place, or of a body, is
 /// known of another.
 pub fn reuse(random: &mut Random, bodies: usize) -> Drill {
