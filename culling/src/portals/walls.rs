@@ -35,7 +35,7 @@ fn step(view: &View, shift_px: f64, w: f64) -> f64 {
         (x.length_squared() + y.length_squared(), x.length_squared() - y.length_squared(), x.dot(y));
     let least = 0.5 * (sum - DVec2::new(difference, 2.0 * both).length());
     if least > 0.0 {
-        0.9 * shift_px * w / least.sqrt()
+        shift_px * w / least.sqrt()
     } else {
         f64::INFINITY
     }
