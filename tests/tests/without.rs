@@ -14,10 +14,14 @@ use sightline::run::targets::Targets;
 
 /// A device without a feature. Stages are timed without a self-check, which takes longer than all else here.
 fn open(extra: Extra) -> Gpu {
+    open_without(&[extra])
+}
+
+fn open_without(extras: &[Extra]) -> Gpu {
     let mut options = GpuOptions { timer: Some(TimerMode::Split), ..options() };
-    options.without.push(extra.name().to_owned());
-    let gpu = Gpu::open(&options).unwrap_or_else(|error| panic!("without {}: {error}", extra.name()));
-    assert!(!gpu.has(extra), "{} was not turned off", extra.name());
+    options.without.extend(extras.iter().map(|extra| extra.name().to_owned()));
+    let gpu = Gpu::open(&options).unwrap_or_else(|error| panic!("without {extras:?}: {error}"));
+    assert!(!extras.iter().any(|extra| gpu.has(*extra)), "{extras:?}: one was not turned off");
     gpu
 }
 
@@ -63,6 +67,18 @@ fn the_laws_hold_without_any_one_feature() {
         let without = |fault| format!("without {}: {fault}", extra.name());
         assert_none(&faults.into_iter().map(without).collect::<Vec<_>>());
     }
+}
+
+/// Each command is a call of its own then, and boxes that are tested read commands that other calls have written to.
+#[test]
+fn the_laws_hold_where_no_call_draws_several() {
+    let _turn = gpu();
+    let gpu = open_without(&[Extra::DrawIndirectCount, Extra::MultiDrawIndirect]);
+    let subjects = ["roc", "roc-iterative", "hzb-iterative", "auto"].map(Subject::named);
+    let faults = subjects
+        .iter()
+        .flat_map(|subject| laws::no_visible_object_is_culled(&gpu, subject, &worlds::special::topologies()));
+    assert_none(&faults.collect::<Vec<_>>());
 }
 
 /// Frames of each method that may upload: its buffers are made and filled then.

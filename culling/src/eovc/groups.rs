@@ -7,6 +7,11 @@ use engine::{Buffer, Frame, Placement};
 use shaders::types::{DrawCommand, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS, MARK_CHUNK};
 use shaders::{eovc, BufferRef};
 
+/// Invocations of `eovc/mark_paths` that look at so many objects.
+pub fn mark_invocations(object_count: u32) -> u32 {
+    object_count.div_ceil(MARK_CHUNK)
+}
+
 /// The groups of a frame, and what earlier frames know of the hierarchy's nodes. Marks are the numbers of frames, so that
 /// nothing need be cleared.
 pub(super) struct Groups {
@@ -68,7 +73,7 @@ impl Groups {
         self.singles.clear(f, "eovc/clear_groups", &self.no_boxes);
         let mark =
             eovc::MarkPaths { occluders, leaves: tree.leaves(), nodes, marked, visible, grids, object_count, frame };
-        f.dispatch(mark, object_count.div_ceil(MARK_CHUNK));
+        f.dispatch(mark, mark_invocations(object_count));
         let extract = eovc::ExtractGroups { nodes, marked, visible, groups: self.starts[0].all(), grids, frame };
         f.dispatch_indirect(extract, grids);
         // The deepest nodes of a pass that opens all are CULL_LEVELS below those of the pass before.

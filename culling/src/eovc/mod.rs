@@ -17,6 +17,7 @@ mod options;
 pub mod twin;
 
 pub use crate::tree::Tree;
+pub use groups::mark_invocations;
 pub use options::OPTIONS;
 
 use crate::boxes::BoxList;

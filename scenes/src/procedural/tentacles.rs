@@ -13,6 +13,9 @@ use std::f32::consts::TAU;
 /// Tentacles at scale 1; there are half as many walls.
 const TENTACLES: f64 = 240.0;
 
+/// Each has a mesh of its own, of 15 kB: more than this is more than many a machine has memory for, and devices have room for.
+const MOST_TENTACLES: usize = 1 << 17;
+
 /// Joints of a tentacle, one above the other.
 const JOINTS: usize = 5;
 
@@ -30,9 +33,7 @@ const KEYS: usize = 17;
 const KEY_S: f64 = 1.0;
 
 pub(super) fn make(options: &SceneOptions) -> Scene {
-    // A wall for every second, and the ground.
-    let most = (crate::check::MOST_OBJECTS - 1) / 3 * 2;
-    let count = ((TENTACLES * options.scale).round() as usize).clamp(8, most);
+    let count = ((TENTACLES * options.scale).round() as usize).clamp(8, MOST_TENTACLES);
     let mut random = Random::new(options.seed, 2);
     let mut assembly = Assembly::new("tentacles");
     let side = 20.0 * (count as f64 / TENTACLES).sqrt();

@@ -2,12 +2,12 @@
 
 use super::{caught, caught_at_a_size, caught_by, coarse, edit, laws, worlds, Case, Make};
 use culling::boxes::{box_view, BoxList};
-use culling::eovc::Tree;
+use culling::eovc::{mark_invocations, Tree};
 use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use scenes::bvh::{Split, NO_NODE};
 use shaders::eovc;
-use shaders::types::{BoxView, DrawCommand, TreeNode, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS, MARK_CHUNK};
+use shaders::types::{BoxView, DrawCommand, TreeNode, CULL_LEVELS, FIRST_CULL_LIST, GRID_WORDS};
 
 /// What is wrong with the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,7 +184,7 @@ impl Broken {
             object_count: world.len() as u32,
             frame: self.mark_of_frame(),
         };
-        f.dispatch(mark, (world.len() as u32).div_ceil(MARK_CHUNK));
+        f.dispatch(mark, mark_invocations(world.len() as u32));
         if self.defect == Defect::PathTooWide {
             let (parents, frame) = (self.tree.host().parents(), self.frame);
             edit(f, &mut self.marked, |marked| {

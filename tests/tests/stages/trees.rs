@@ -1,12 +1,12 @@
 //! The stages of `roc` and `eovc` against their twins, and occludee groups against the thesis' words.
 
-use culling::eovc::{twin as eovc_twin, Tree};
+use culling::eovc::{mark_invocations, twin as eovc_twin, Tree};
 use culling::{View, World};
 use engine::{Buffer, Gpu, Placement};
 use harness::{gpu, worlds, Random};
 use scenes::bvh::{NodeState, Split};
 use shaders::types::{
-    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, MARK_CHUNK, RAY_OBJECTS,
+    DrawCommand, TreeNode, CULL_LEVELS, FILTER_STRIP, FIRST_CULL_LIST, GRID_WORDS, MARKED_LIST, RAY_OBJECTS,
 };
 use shaders::{eovc, pack, roc};
 
@@ -133,7 +133,7 @@ pub fn extracted_on_gpu(gpu: &Gpu, stand: &Stand, occluders: &[u32]) -> (Vec<u32
         object_count,
         frame,
     };
-    f.dispatch(mark, object_count.div_ceil(MARK_CHUNK));
+    f.dispatch(mark, mark_invocations(object_count));
     let extract = eovc::ExtractGroups {
         nodes,
         marked: all_marked,
