@@ -14,6 +14,8 @@ command -v cargo-fuzz >/dev/null || {
 # Small files: mutations of a large one mostly change its vertices.
 mkdir -p fuzz/corpus/import
 cp -n fuzz/seeds/*.gltf fuzz/corpus/import/
+# Compressed files and others, made in code.
+cargo run --quiet --example mutate_imports -- --write fuzz/corpus/import
 if [[ -d $MODELS ]]; then
     find "$MODELS" \( -name '*.gltf' -o -name '*.glb' \) -size -64k -print0 | while IFS= read -r -d '' model; do
         cp -n "$model" "fuzz/corpus/import/$(sha256sum "$model" | cut -c1-16)"

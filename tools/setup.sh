@@ -3,7 +3,7 @@
 # and test models. Installs only what is missing, and says what. Safe to run again.
 set -euo pipefail
 
-readonly RUST_NEEDED=1.86
+readonly RUST_NEEDED=1.88
 
 usage() {
     cat <<'END'

@@ -109,6 +109,8 @@ pub(crate) fn choose(
     }
     let position = match wanted {
         None => found.iter().position(|(_, info)| info.missing.is_empty()).or(Some(0)),
+        // An empty text is a part of every name, so it would match any device.
+        Some("") => None,
         Some(wanted) => match wanted.parse::<usize>() {
             Ok(index) => Some(index).filter(|index| *index < found.len()),
             Err(_) => found.iter().position(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase())),

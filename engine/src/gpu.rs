@@ -28,7 +28,7 @@ pub struct GpuOptions {
     pub device: Option<String>,
     /// Turn on the validation layer with synchronization validation; any message fails the frame.
     pub validation: bool,
-    /// How stages are timed; none decides by a self-check.
+    /// How stages are timed; none decides by the kind of device, see [`TimerMode::of`].
     pub timer: Option<TimerMode>,
     /// Where the pipeline cache lies; none keeps it in memory.
     pub cache_dir: Option<PathBuf>,

@@ -164,7 +164,7 @@ fn check_range(vulkan: &Vulkan, name: &str, bytes: u64, placement: Placement) ->
         wanted: format!("{bytes} bytes"),
         limit: format!("{most} bytes {of}"),
         device: vulkan.info.name.clone(),
-        remedy: "use a smaller --scale".to_owned(),
+        remedy: "use a smaller --scale or --size".to_owned(),
     })
 }
 

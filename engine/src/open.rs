@@ -1,4 +1,4 @@
-//! Opening a device, and the self-check that decides how its stages are timed.
+//! Opening a device, and the check of how its stages are timed.
 
 use crate::features::Extra;
 use crate::{
@@ -13,16 +13,28 @@ impl Gpu {
         let mode = match options.timer {
             _ if !gpu.has(Extra::Timestamps) => TimerMode::Off,
             Some(mode) => mode,
-            None => self_check(&gpu)?,
+            None => gpu.info().map_or(TimerMode::Split, |info| TimerMode::of(info.kind)),
         };
         if let Some(vulkan) = &gpu.0.vulkan {
             vulkan.timer.get_or_init(|| mode);
         }
         Ok(gpu)
     }
+
+    /// Measures whether plain timestamps charge work to the right stage on this device; if not, [`TimerMode::Split`] is needed. A busy
+    /// machine can change the answer, so only messages to people may depend on it.
+    ///
+    /// # Errors
+    /// An error of the device.
+    pub fn check_timers(&self) -> Result<TimerMode> {
+        match self.has(Extra::Timestamps) {
+            true => check_timers(self),
+            false => Ok(TimerMode::Off),
+        }
+    }
 }
 
-/// Side of the picture that the self-check's heavy half fills, in pixels.
+/// Side of the picture that the check's heavy half fills, in pixels.
 const CHECK_PX: u32 = 512;
 
 /// Words that its heavy dispatch fills.
@@ -32,7 +44,7 @@ const CHECK_WORDS: u32 = 1 << 20;
 /// heavy ones: a light dispatch after a heavy drawing, and a light clear before a heavy dispatch. If either then takes three
 /// times as long and a fifth of the whole, stages are not kept apart. (lavapipe puts drawings off and runs dispatches at once,
 /// so that a clear is charged with the dispatch behind it.)
-fn self_check(gpu: &Gpu) -> Result<TimerMode> {
+fn check_timers(gpu: &Gpu) -> Result<TimerMode> {
     let check = Check::new(gpu)?;
     let (mut drawn_on, mut dispatched_on) = (Vec::new(), Vec::new());
     for _ in 0..3 {
@@ -43,7 +55,7 @@ fn self_check(gpu: &Gpu) -> Result<TimerMode> {
         drawn_on.push(overcharge(last(&alone), last(&after_drawing), after_drawing.iter().sum()));
         dispatched_on.push(overcharge(alone[0], before_dispatch[0], before_dispatch.iter().sum()));
     }
-    tracing::debug!(?drawn_on, ?dispatched_on, "timer self-check: what light stages were charged with");
+    tracing::debug!(?drawn_on, ?dispatched_on, "timer check: light stages that were charged with the work of others");
     let often = |charged: &[bool]| charged.iter().filter(|charged| **charged).count() >= 2;
     Ok(if often(&drawn_on) || often(&dispatched_on) { TimerMode::Split } else { TimerMode::Plain })
 }
@@ -53,7 +65,7 @@ fn overcharge(alone_ms: f64, beside_ms: f64, total_ms: f64) -> bool {
     beside_ms > 3.0 * alone_ms && beside_ms > 0.2 * total_ms
 }
 
-/// What the self-check runs on.
+/// The resources of the check.
 struct Check {
     _images: [Image; 2],
     target: Target,

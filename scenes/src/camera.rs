@@ -27,7 +27,56 @@ pub enum Projection {
     Custom(DMat4),
 }
 
+/// How the rectangle that a camera was made for goes into a picture of another aspect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fit {
+    /// All of the rectangle is in the picture. A picture that is too narrow for it shows more above and below (glTF 2.0, 3.10.3: a
+    /// camera should not crop).
+    #[default]
+    Inside,
+    /// The rectangle is as high as the picture. A picture that is too narrow for it crops both sides.
+    Height,
+}
+
+impl Fit {
+    /// All ways, the default first.
+    pub const ALL: [Fit; 2] = [Fit::Inside, Fit::Height];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Fit::Inside => "inside",
+            Fit::Height => "height",
+        }
+    }
+
+    /// Returns the factor, 1 or more, by which a view volume must grow to fit a camera's rectangle into a picture. Both arguments are
+    /// width over height.
+    pub fn widening(self, camera: Option<f64>, picture: f64) -> f64 {
+        match (self, camera) {
+            (Fit::Inside, Some(camera)) => (camera / picture).max(1.0),
+            _ => 1.0,
+        }
+    }
+}
+
 impl Projection {
+    /// Returns a projection whose view volume is `factor` times as high and as wide at every distance, `factor` > 0. A custom
+    /// projection stays as it is.
+    pub fn widened(self, factor: f64) -> Projection {
+        match self {
+            // The tangent and its inverse may miss the same angle by a rounding.
+            _ if factor == 1.0 => self,
+            Projection::Perspective { fov_y, near, far } => {
+                Projection::Perspective { fov_y: 2.0 * (factor * (0.5 * fov_y).tan()).atan(), near, far }
+            }
+            Projection::Orthographic { half_height, near, far } => {
+                Projection::Orthographic { half_height: half_height * factor, near, far }
+            }
+            Projection::Custom(_) => self,
+        }
+    }
+
     /// The clip-from-view matrix for a picture of the given width over height.
     /// View space is right-handed, looks down -z with y up; clip space has y down and depth 1 (near) to 0 (far).
     pub fn clip_from_view(&self, aspect: f64) -> DMat4 {
@@ -95,6 +144,8 @@ pub struct Camera {
     pub pose: Pose,
     /// What it sees.
     pub projection: Projection,
+    /// Width over height of the rectangle that the camera was made for; none for any rectangle.
+    pub aspect: Option<f64>,
     /// The animated node that carries it, if any: an index into the scene's [`crate::Motion`] nodes.
     pub node: Option<usize>,
 }

@@ -74,10 +74,7 @@ impl Scene {
             let fault = format!("it is animated, but the scene has {} objects", self.objects.len());
             return Err(SceneError::BadObject { object: format!("number {stray}"), fault });
         }
-        if let Some((object, fault)) = self.skin_fault() {
-            let name = self.objects.get(object as usize).map(|object| object.name.clone());
-            return Err(SceneError::BadObject { object: name.unwrap_or_else(|| format!("number {object}")), fault });
-        }
+        self.check_deformed()?;
         let Motion::Orbits(orbits) = &self.motion else { return Ok(()) };
         for orbit in orbits {
             let numbers = [orbit.radians_per_s, orbit.bob_period_s];
@@ -150,7 +147,8 @@ fn mesh_fault(mesh: &Mesh) -> Option<String> {
         Topology::Points => 1,
     };
     let count = mesh.indices.len();
-    (count % each != 0).then(|| format!("its mesh '{}' has {count} indices, not a multiple of {each}", mesh.name))
+    (!count.is_multiple_of(each))
+        .then(|| format!("its mesh '{}' has {count} indices, not a multiple of {each}", mesh.name))
 }
 
 fn surface_fault(object: &Object, scene: &Scene) -> Option<String> {
@@ -249,7 +247,7 @@ mod tests {
             }),
             fault(|scene| scene.meshes[0].texture_coordinates = vec![Vec2::ZERO]),
             fault(|scene| scene.meshes[0].texture_coordinates = vec![Vec2::NAN; 3]),
-            fault(|scene| scene.meshes[0].colours = vec![[0; 4]; 4]),
+            fault(|scene| scene.meshes[0].colours = vec![[0.0; 4]; 4]),
             fault(|scene| scene.meshes[0].positions[1].y = f32::NAN),
             fault(|scene| scene.meshes[0].normals[1].y = f32::NAN),
             fault(|scene| scene.meshes[0].normals.truncate(2)),

@@ -58,3 +58,11 @@ pub enum SceneError {
         fault: String,
     },
 }
+
+/// A number as people type it: 1e308 has no 308 zeros.
+pub(crate) fn typed_number(number: f64) -> String {
+    match number.abs() {
+        size if size == 0.0 || (1e-4..1e9).contains(&size) || !size.is_finite() => number.to_string(),
+        _ => format!("{number:e}"),
+    }
+}

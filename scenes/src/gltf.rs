@@ -1,9 +1,10 @@
 //! Reads glTF 2.0, as .gltf with its data beside or within it, or as .glb.
 //!
-//! Read are: meshes of every mode and vertex format (KHR_mesh_quantization included), instances (EXT_mesh_gpu_instancing), node
-//! trees in `f64`, node animation, cameras, and of materials the base colour
-//! with its texture (PNG or JPEG; KHR_texture_transform), vertex colours, the alpha mode and its cutoff, and which sides show. Skins bend their meshes, by
-//! four joints a vertex. Morph targets stay at their default weights. Lights and other textures are not read.
+//! The import reads meshes of every mode and vertex format (KHR_mesh_quantization included), compressed or not; instances
+//! (EXT_mesh_gpu_instancing); node trees in `f64`; node animation; and cameras. Of materials it reads the base colour with its texture
+//! (PNG, JPEG or WebP; KHR_texture_transform), vertex colours, the alpha mode and its cutoff, and which sides show. Skins bend their
+//! meshes, by eight joints a vertex, and animated weights of morph targets are played. Lights and other textures are not read.
+//! `extensions.rs` lists all extensions and the treatment of each.
 //!
 //! Whatever is in the file, [`import`] returns: it does not panic, does not recurse, and allocates in proportion to the file.
 
@@ -11,30 +12,38 @@ mod accessor;
 mod buffers;
 mod cameras;
 pub(crate) mod cells;
+mod compressed;
 mod container;
 mod document;
+mod extensions;
 mod fault;
+mod looks;
 mod materials;
 mod mesh;
+mod morphs;
 mod motion;
-mod normals;
+pub(crate) mod normals;
+mod numbers;
 mod objects;
+mod pictures;
 mod skins;
 mod tree;
+mod uri;
+mod visibility;
 
-use crate::animation::{Attachment, Motion, NodeAnimation};
+use crate::animation::{Attachment, Motion, NodeAnimation, Track};
 use crate::camera::Camera;
 use crate::error::SceneError;
 use crate::model::Scene;
+use crate::skin::JOINTS_A_VERTEX;
 use accessor::Accessors;
 use document::Document;
 use fault::{broken, Fault, Outcome};
-use gltf::json::animation::Property::MorphTargetWeights;
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked::Valid;
 use motion::Moving;
-use objects::Objects;
-use skins::Skeletons;
+use objects::{Objects, Placement};
+use skins::{Deforming, Skeletons};
 use std::path::Path;
 use tree::{node_label, Tree};
 
@@ -59,42 +68,67 @@ pub fn import(path: &Path) -> Result<Scene, SceneError> {
 pub fn import_bytes(path: &Path, file: &[u8]) -> Result<Scene, SceneError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    read(file, folder, name).map_err(|fault| fault.in_file(path))
+    let scene = read(file, folder, name).map_err(|fault| fault.in_file(path))?;
+    if scene.objects.is_empty() {
+        tracing::warn!("{}: there is nothing to draw: {}", path.display(), why_empty(file));
+    }
+    Ok(scene)
+}
+
+/// Returns the reason why a legal file shows nothing.
+fn why_empty(file: &[u8]) -> &'static str {
+    let json = container::split(file).ok().and_then(|parts| serde_json::from_slice(parts.json).ok());
+    let json: serde_json::Value = json.unwrap_or_default();
+    let filled = |list: &str| json[list].as_array().is_some_and(|list| !list.is_empty());
+    match (filled("scenes"), filled("meshes")) {
+        (false, _) => "it has no scene; list the root nodes in `scenes`",
+        (true, false) => "it has no mesh",
+        (true, true) => "no node of the scene that is shown has a mesh; choose another with `scene`",
+    }
 }
 
 fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
     let parts = container::split(file)?;
-    let document = document::parse(&parts.json)?;
+    let json = numbers::whole(parts.json);
+    let mut document = document::parse(&json)?;
+    looks::settle(&mut document.root.materials);
     let tree = Tree::new(&document)?;
-    let buffers = buffers::load(&document.root, parts.binary.as_deref(), folder)?;
-    let accessors = Accessors::new(&document, &buffers);
+    let hidden = visibility::hidden(&document.root, &tree);
+    let mut buffers = buffers::load(&document.root, parts.binary, folder)?;
+    let size = json.len() as u64 + buffers::stored(&buffers);
+    compressed::decode(&mut document, &mut buffers)?;
+    let accessors = Accessors::new(&document, &buffers, size);
     let moving = Moving::read(&document, &accessors, &tree)?;
     let skeletons = Skeletons::read(&document, &accessors, &tree)?;
 
-    let mut objects = Objects::new(&document, &accessors, &skeletons, folder);
+    let mut objects = Objects::new(&document, &accessors, (&skeletons, &moving), folder);
     let mut cameras = Vec::new();
     // In order of index, whatever the tree looks like.
     let mut nodes = tree.order.clone();
     nodes.sort_unstable();
     for &node in &nodes {
-        objects.add(node, &tree)?;
+        if !hidden[node] {
+            objects.add(node, &tree)?;
+        }
         if let Some(camera) = document.root.nodes[node].camera {
             let name = document.root.nodes[node].name.as_deref();
-            let camera = cameras::read(&document, camera, name, tree.world_from_node[node]);
+            let camera = cameras::read(&document, camera, name, tree.world_from_camera(node));
             cameras.push((node, camera.map_err(|fault| fault.within(|| node_label(&document, node)))?));
         }
     }
-    warn_of_stills(&document, &name, &nodes);
+    warn_of_joints(&document, &name, &nodes);
     let (nodes_of_cameras, cameras) = cameras.into_iter().unzip();
-    let (meshes, textures) = (objects.meshes, objects.materials.textures);
-    let mut scene = Scene { name, meshes, objects: objects.objects, textures, cameras, ..Scene::default() };
+    let Objects { meshes, materials, placements, deforming, weights, objects, .. } = objects;
+    let mut scene = Scene { name, meshes, objects, textures: materials.textures, cameras, ..Scene::default() };
     scene.cells = cells::read(&document)?;
     let moving_skins = skeletons.moving(&document, &moving);
-    let mut moves: Vec<bool> = objects.placements.iter().map(|placed| moving.moves(placed.node)).collect();
-    objects.bent.iter().for_each(|bent| moves[bent.object as usize] |= moving_skins[bent.skin]);
-    let carried = Carried { placements: &objects.placements, moves, bones: skeletons.bones(&tree, &moving) };
-    let places = set_in_motion(&mut scene, &document, &tree, moving, &carried, nodes_of_cameras)?;
-    skeletons.bend(&mut scene, &tree, (&moving_skins, &places), objects.bent)?;
+    let deforms = deforming_objects(&scene, &deforming, &moving_skins);
+    let mut bones = skeletons.bones(&tree, &moving);
+    bones.extend(placements.iter().zip(&deforms).filter(|(_, deforms)| **deforms).map(|(placed, _)| placed.node));
+    let moves = placements.iter().zip(deforms).map(|(placed, deforms)| deforms || moving.moves(placed.node));
+    let carried = Carried { placements: &placements, moves: moves.collect(), bones, weights };
+    let places = set_in_motion(&mut scene, &document, &tree, moving, carried, nodes_of_cameras)?;
+    skeletons.deform(&mut scene, &tree, (&moving_skins, &places), deforming)?;
     check_cameras(&scene.cameras)?;
     scene.faults().map_err(|error| Fault::Broken(error.to_string()))?;
     Ok(scene)
@@ -103,10 +137,19 @@ fn read(file: &[u8], folder: &Path, name: String) -> Outcome<Scene> {
 /// What nodes carry.
 struct Carried<'a> {
     /// By object.
-    placements: &'a [objects::Placement],
+    placements: &'a [Placement],
     moves: Vec<bool>,
-    /// Nodes of skins that move.
+    /// Nodes of skins that move, and those that carry deformed meshes.
     bones: Vec<usize>,
+    /// Animated weights of morph targets.
+    weights: Vec<Track<f64>>,
+}
+
+/// Returns a flag for each object: its mesh changes its shape with time.
+fn deforming_objects(scene: &Scene, deforming: &[Deforming], moving_skins: &[bool]) -> Vec<bool> {
+    let mut deforms = vec![false; scene.meshes.len()];
+    deforming.iter().for_each(|deforming| deforms[deforming.mesh as usize] = deforming.moves(moving_skins));
+    scene.objects.iter().map(|object| deforms[object.mesh as usize]).collect()
 }
 
 /// Hangs objects and cameras on the animated nodes and puts them where they are at time 0. Gives the place of each of the file's nodes among the animated ones.
@@ -115,7 +158,7 @@ fn set_in_motion(
     document: &Document,
     tree: &Tree,
     moving: Moving,
-    objects: &Carried<'_>,
+    objects: Carried<'_>,
     nodes_of_cameras: Vec<usize>,
 ) -> Outcome<Vec<Option<usize>>> {
     let carriers =
@@ -131,9 +174,11 @@ fn set_in_motion(
     let attachments = placements.filter_map(|(object, (placement, _))| {
         let node = places[placement.node]?;
         // There are at most 2^24 objects.
-        Some(Attachment { object: object as u32, node, node_from_object: placement.node_from_object })
+        let Placement { node_from_object, world_from_tree, .. } = *placement;
+        Some(Attachment { object: object as u32, node, node_from_object, world_from_tree })
     });
-    scene.motion = Motion::Nodes(NodeAnimation::new(nodes, attachments.collect()).map_err(Fault::Broken)?);
+    let animation = NodeAnimation::new(nodes, attachments.collect()).map_err(Fault::Broken)?;
+    scene.motion = Motion::Nodes(animation.with_weights(objects.weights));
     let mut transforms = Vec::new();
     scene.motion.transforms_at(0.0, &mut transforms);
     for (index, world_from_object) in transforms {
@@ -159,19 +204,16 @@ fn check_cameras(cameras: &[Camera]) -> Outcome<()> {
     }
 }
 
-/// Says once what is drawn without its motion.
-fn warn_of_stills(document: &Document, scene: &str, nodes: &[usize]) {
+/// Warns once of meshes that are bent by fewer joints than the file gives them.
+fn warn_of_joints(document: &Document, scene: &str, nodes: &[usize]) {
     let meshes = nodes
         .iter()
         .filter_map(|&node| document.root.nodes[node].mesh.filter(|_| document.root.nodes[node].skin.is_some()));
     let primitives = meshes.filter_map(|mesh| document.root.meshes.get(mesh.value())).flat_map(|mesh| &mesh.primitives);
-    let more = primitives.filter(|primitive| primitive.attributes.contains_key(&Valid(Semantic::Joints(1)))).count();
+    let more = primitives.filter(|primitive| primitive.attributes.contains_key(&Valid(Semantic::Joints(2)))).count();
     if more > 0 {
-        tracing::warn!("{scene}: {more} skinned meshes have more than four joints a vertex, of which four bend it");
-    }
-    let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
-    let morphs = channels.filter(|channel| channel.target.path == Valid(MorphTargetWeights)).count();
-    if morphs > 0 {
-        tracing::warn!("{scene}: {morphs} animations of morph weights are not played");
+        tracing::warn!(
+            "{scene}: {more} skinned meshes have more than {JOINTS_A_VERTEX} joints a vertex (JOINTS_2); the {JOINTS_A_VERTEX} of the largest weights bend it"
+        );
     }
 }

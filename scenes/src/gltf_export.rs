@@ -5,14 +5,19 @@
 //! - A mesh that is used with several colours or surfaces comes back as one mesh for each: in glTF the mesh holds its material.
 //! - A texture of objects whose mesh has no texture coordinates is not drawn, and comes back as none.
 //! - Objects whose mesh is empty come back as nothing: glTF has no empty meshes.
-//! - Motion becomes straight lines between keys, one a frame, in `f32`. Orbits keep each object's shape exactly; of other
-//!   motion, skew is lost. So it is with skeletons, whose inverse bind matrices are rounded to `f32`; meshes that they bend are written as they are at rest.
+//! - Motion becomes straight lines between keys, one a frame, in `f32`. Animated nodes that carry an object or a joint are written with all
+//!   nodes above them, so that objects below a parent that shears or flattens them keep their shape.
+//! - Deformed meshes are written at rest, and inverse bind matrices are rounded to `f32`. An instance of a skinned mesh gets a skeleton
+//!   of its own.
+//! - Nodes that nothing moves are merged into the matrices of the objects below them.
+//! - Cameras on moving nodes lose their motion: they are written in their place at time 0.
 //! - The path is the animated camera `path <name>`, 30 keys a second, in `f32`, with the field of view of its first frame.
 //! - The walk is not written, nor what is solid of a city's buildings.
 //!
 //! Skewed and flat matrices are beyond the letter of glTF, which wants matrices made of translation, rotation and scale.
 
 mod binary;
+mod morphs;
 mod motion;
 mod skins;
 
@@ -35,13 +40,13 @@ use std::collections::HashMap;
 pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Result<Vec<u8>, SceneError> {
     scene.check()?;
     let mut export = Export::default();
-    export.geometry(scene);
+    export.geometry(scene)?;
     export.textures(&scene.textures)?;
     for object in &scene.objects {
         export.object(object, &scene.meshes);
     }
     export.roots.extend(0..export.nodes.len());
-    export.bent_objects(scene)?;
+    export.bent_objects(scene);
     let shots = motion::samples(scene, path, frames);
     if let Some(path) = path {
         export.path_camera(path, &shots)?;
@@ -52,10 +57,11 @@ pub fn export_glb(scene: &Scene, path: Option<&CameraPath>, frames: usize) -> Re
             "translation": camera.pose.position.to_array(),
             "rotation": camera.pose.rotation.to_array(),
         });
-        export.camera(&camera.name, &camera.projection, node)?;
+        export.camera(&camera.name, &camera.projection, camera.aspect, node)?;
     }
-    export.object_motion(scene, &shots);
-    export.skeletons(scene, &shots);
+    let written = export.object_motion(scene, &shots);
+    export.skeletons(scene, &written);
+    export.weights(scene, &shots);
     export.extras = scene.cells.as_ref().map_or(Value::Null, cells::extras);
     export.finish(&scene.name)
 }
@@ -77,6 +83,8 @@ struct Export {
     texture_samplers: Vec<Value>,
     cameras: Vec<Value>,
     skins: Vec<Value>,
+    /// Skins that are written once more for an instance: the scene's skin, and the place of the skeleton.
+    placed_skins: Vec<(u32, DAffine3)>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
     /// The primitive of each scene mesh, without its material; null for empty ones.
@@ -89,8 +97,8 @@ struct Export {
 }
 
 impl Export {
-    fn geometry(&mut self, scene: &Scene) {
-        for mesh in skins::meshes_at_rest(scene).iter() {
+    fn geometry(&mut self, scene: &Scene) -> Result<(), SceneError> {
+        for (mesh, index) in skins::meshes_at_rest(scene).iter().zip(0..) {
             if mesh.positions.is_empty() || mesh.indices.is_empty() {
                 self.primitives.push(Value::Null);
                 continue;
@@ -109,10 +117,17 @@ impl Export {
                 attributes["TEXCOORD_0"] = self.binary.vectors("VEC2", coordinates).into();
             }
             if !mesh.colours.is_empty() {
-                attributes["COLOR_0"] = self.binary.colours(&mesh.colours).into();
+                attributes["COLOR_0"] = self.binary.vectors("VEC4", mesh.colours.iter().copied()).into();
             }
-            self.primitives.push(json!({ "attributes": attributes, "indices": indices, "mode": mode }));
+            self.influences(scene, index, &mut attributes)?;
+            let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": mode });
+            let targets = self.targets(scene, index);
+            if !targets.is_null() {
+                primitive["targets"] = targets;
+            }
+            self.primitives.push(primitive);
         }
+        Ok(())
     }
 
     /// Each with a sampler and a picture of its own.
@@ -185,17 +200,26 @@ impl Export {
     }
 
     /// Adds a camera on a node of its own and returns the node.
-    fn camera(&mut self, name: &str, projection: &Projection, mut node: Value) -> Result<usize, SceneError> {
+    fn camera(
+        &mut self,
+        name: &str,
+        projection: &Projection,
+        aspect: Option<f64>,
+        mut node: Value,
+    ) -> Result<usize, SceneError> {
         let mut camera = match *projection {
             Projection::Perspective { fov_y, near, far } => {
                 let mut lens = json!({ "yfov": fov_y, "znear": near });
                 if let Some(far) = far {
                     lens["zfar"] = far.into();
                 }
+                if let Some(aspect) = aspect {
+                    lens["aspectRatio"] = aspect.into();
+                }
                 json!({ "type": "perspective", "perspective": lens })
             }
             Projection::Orthographic { half_height, near, far } => {
-                let lens = json!({ "xmag": half_height, "ymag": half_height, "znear": near, "zfar": far });
+                let lens = json!({ "xmag": half_height * aspect.unwrap_or(1.0), "ymag": half_height, "znear": near, "zfar": far });
                 json!({ "type": "orthographic", "orthographic": lens })
             }
             Projection::Custom(_) => {

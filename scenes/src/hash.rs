@@ -2,7 +2,7 @@
 
 use crate::animation::{Motion, Orbit};
 use crate::model::{Mesh, Object, Scene, Surface};
-use crate::skin::Skinned;
+use crate::morph::{Deformed, MorphTarget};
 use glam::DAffine3;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -27,7 +27,7 @@ impl Scene {
             hash_debug(&mut hash, &(camera.pose, camera.projection, camera.node));
         }
         hash_debug(&mut hash, &self.walk);
-        hash_skins(&mut hash, self);
+        hash_deformed(&mut hash, self);
         hash.finalize().into()
     }
 }
@@ -77,7 +77,7 @@ fn hash_materials(hash: &mut Sha256, scene: &Scene) {
             let numbers = mesh.texture_coordinates.iter().flat_map(|at| at.to_array());
             hash_numbers(hash, numbers.map(f32::to_le_bytes));
             hash_count(hash, mesh.colours.len());
-            hash_numbers(hash, mesh.colours.iter().copied());
+            hash_numbers(hash, mesh.colours.iter().flat_map(|colour| colour.map(f32::to_le_bytes)));
         }
     }
     for (index, Object { surface, .. }) in scene.objects.iter().enumerate() {
@@ -99,19 +99,28 @@ fn hash_materials(hash: &mut Sha256, scene: &Scene) {
 }
 
 /// Only of scenes that have any, so that all others keep the hash that they have always had.
-fn hash_skins(hash: &mut Sha256, scene: &Scene) {
-    if scene.skins.is_empty() {
+fn hash_deformed(hash: &mut Sha256, scene: &Scene) {
+    if scene.deformed.is_empty() && scene.skins.is_empty() {
         return;
     }
     hash_debug(hash, &scene.skins);
-    for Skinned { object, skin, rest } in &scene.skinned {
-        hash.update(b"skinned");
-        hash_numbers(hash, [*object, *skin].into_iter().map(u32::to_le_bytes));
+    for Deformed { mesh, skin, rest, targets } in &scene.deformed {
+        hash.update(b"deformed");
+        // No scene has as many skins as the last number.
+        hash_numbers(hash, [*mesh, skin.unwrap_or(u32::MAX)].into_iter().map(u32::to_le_bytes));
         hash_count(hash, rest.len());
         for vertex in rest {
             let vectors = vertex.position.to_array().into_iter().chain(vertex.normal.to_array());
             hash_numbers(hash, vectors.chain(vertex.weights).map(f32::to_le_bytes));
             hash_numbers(hash, vertex.joints.into_iter().map(u32::to_le_bytes));
+        }
+        for MorphTarget { weight, displacements } in targets {
+            hash.update(b"target");
+            hash_count(hash, *weight as usize);
+            hash_count(hash, displacements.len());
+            hash_numbers(hash, displacements.iter().map(|displaced| displaced.vertex.to_le_bytes()));
+            let vectors = displacements.iter().flat_map(|displaced| [displaced.position, displaced.normal]);
+            hash_numbers(hash, vectors.flat_map(|vector| vector.to_array()).map(f32::to_le_bytes));
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::animation::Motion;
 use crate::camera::Camera;
-use crate::skin::{Skin, Skinned};
+use crate::morph::Deformed;
+use crate::skin::Skin;
 use crate::texture::Texture;
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
@@ -35,8 +36,9 @@ pub struct Mesh {
     pub declared_bounds: Option<Aabb>,
     /// Where each position lies on the texture, (1, 1) being its lower right corner; empty if there is no texture.
     pub texture_coordinates: Vec<Vec2>,
-    /// What each position's colour is multiplied by: linear RGBA, 255 for 1; empty for no colours.
-    pub colours: Vec<[u8; 4]>,
+    /// Factors of the colour at each position: linear RGBA, each in 0..=1; empty for no colours. They are not cut to 8 bits, as alpha
+    /// may have to equal a cutoff.
+    pub colours: Vec<[f32; 4]>,
 }
 
 /// What of a surface decides where it leaves fragments, beside its colour.
@@ -104,8 +106,8 @@ pub struct Scene {
     pub motion: Motion,
     /// Skeletons.
     pub skins: Vec<Skin>,
-    /// The objects that they bend, by ascending object. See [`Scene::bend`].
-    pub skinned: Vec<Skinned>,
+    /// Meshes that skeletons or morph targets deform, by ascending mesh. See [`Scene::deform`].
+    pub deformed: Vec<Deformed>,
     /// Where one can walk, if the generator knows.
     pub walk: Option<Walk>,
     /// What is solid of a city; empty for scenes that are none.

@@ -12,22 +12,26 @@
 //! `(a·z) a ± sqrt((z - (a·z) a)² + (a × z)²)`, component by component. Its sides are largest values of functions that are linear in z, so
 //! convex: the corners of the mesh's box have the largest again.
 //!
-//! What a skeleton bends has the bounds of all its joints together, each of which carries some of the vertices: see [`bent`].
+//! A skinned mesh has the bounds of all its joints together, each of which carries some of the vertices: see [`bent`]. Where morph
+//! targets displace vertices, each part reaches as far as its vertices can within the span: see [`morphed`]. A file with many keys and
+//! vertices could take hours that way. Objects beyond a limit of work get the reach for all weights of the animation in every span.
 
 mod bent;
 mod carried;
+mod morphed;
 mod spread;
 
-pub(crate) use bent::bent_always;
+pub(crate) use bent::always;
 
 use crate::animation::{Attachment, Motion, NodeAnimation, Orbit};
 use crate::bounds::{Reach, WorldBounds};
 use crate::model::{Aabb, Scene};
-use crate::skin::JointPlaces;
+use crate::morph::Shapes;
 use bent::Body;
 use carried::{chain, Hung};
 use glam::{DAffine3, DVec3};
 use spread::{stretch, Span};
+use std::sync::Arc;
 
 /// How the bounds of moving objects are had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,6 +67,10 @@ impl MovingBounds {
 /// Spans that a motion is cut into, at least: a choice. More make smaller boxes, and take longer to load.
 const SPANS: usize = 64;
 
+/// Most displacements of vertices that are looked at, counted once a span, for all boxes of a scene. It takes about a second. Beyond that,
+/// weights of morph targets may have any of their values in each span: the boxes still hold all vertices, but are larger.
+const MOST_STEPS: u64 = 1 << 25;
+
 /// What summing up the way from an object to the world may round, as a part of the largest coordinate, for each node on it.
 const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 
@@ -71,8 +79,8 @@ const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 pub struct MovingBoxes {
     mode: MovingBounds,
     sweeps: Vec<Sweep>,
-    /// Of those that a skeleton bends; empty if there are no such.
-    bodies: Vec<Option<Body>>,
+    /// The body of each moving object whose mesh is deformed; empty if there is none.
+    bodies: Vec<Option<Arc<Body>>>,
 }
 
 /// What is known of one object's motion before it begins.
@@ -96,9 +104,10 @@ impl MovingBoxes {
             _ if mode == MovingBounds::PerFrame => Vec::new(),
             Motion::Still => Vec::new(),
             Motion::Nodes(nodes) => {
+                let mut left = MOST_STEPS;
                 let sweep = |(place, attachment): (usize, &Attachment)| match bodies.get(place).and_then(Option::as_ref)
                 {
-                    Some(body) => body.on_nodes(nodes, &scene.skins[body.skin as usize], mode),
+                    Some(body) => body.on_nodes(nodes, &scene.skins, attachment, (mode, &mut left)),
                     None => shape(attachment.object).on_nodes(nodes, attachment),
                 };
                 nodes.objects().iter().enumerate().map(sweep).collect()
@@ -118,18 +127,18 @@ impl MovingBoxes {
     }
 
     /// Bounds at a time of one of the moving objects, by its place in the order, which then has this transform; `bounds` and `mesh`
-    /// are those that they were made with, and joints are at that time. Not valid if the motion is not finite.
+    /// are those of `new`, and shapes are of that time. Not valid if the motion is not finite.
     pub fn at(
         &self,
         moving: usize,
         seconds: f64,
         bounds: &WorldBounds,
         (mesh, world_from_object): (u32, &DAffine3),
-        joints: &JointPlaces,
+        shapes: &Shapes,
     ) -> Aabb {
         let Some(sweep) = self.sweeps.get(moving) else {
             return match self.bodies.get(moving).and_then(Option::as_ref) {
-                Some(body) => body.bounds(world_from_object, joints.of(body.skin)),
+                Some(body) => body.bounds(world_from_object, shapes),
                 None => bounds.of(mesh, world_from_object),
             };
         };
@@ -161,8 +170,20 @@ struct Swept {
     farthest: f64,
 }
 
-/// The sweep of what consists of parts, each of which hangs on nodes and is somewhere in each span.
-fn sweep(parts: &[Hung<'_>], mode: MovingBounds, middle: DVec3, swept: impl Fn(&Hung<'_>, Span) -> Swept) -> Sweep {
+/// Times at which the weights of an object change: of all keys, and of each track's first and last key.
+#[derive(Clone, Debug, Default)]
+struct WeightTimes {
+    keys: Vec<f64>,
+    ends: Vec<f64>,
+}
+
+/// Computes the sweep of an object of several parts, each of which hangs on nodes. `swept` takes the index of a part and a span.
+fn sweep(
+    parts: &[Hung<'_>],
+    (weights, mode): (&WeightTimes, MovingBounds),
+    middle: DVec3,
+    swept: impl Fn(usize, Span) -> Swept,
+) -> Sweep {
     let sorted = |mut times: Vec<f64>| {
         times.sort_by(f64::total_cmp);
         times.dedup();
@@ -170,20 +191,24 @@ fn sweep(parts: &[Hung<'_>], mode: MovingBounds, middle: DVec3, swept: impl Fn(&
     };
     let cuts = match mode {
         MovingBounds::PerAnimation => {
-            parts.iter().flat_map(|part| &part.chain).flat_map(|node| node.track_ends()).collect()
+            let nodes = parts.iter().flat_map(|part| &part.chain);
+            nodes.flat_map(|node| node.track_ends()).chain(weights.ends.iter().copied()).collect()
         }
         _ => Vec::new(),
     };
     let cuts = sorted(cuts);
-    let keys = parts.iter().map(|part| sorted(part.chain.iter().flat_map(|node| node.key_times()).collect()));
+    let keys = parts.iter().map(|part| {
+        let nodes = part.chain.iter().flat_map(|node| node.key_times());
+        sorted(nodes.chain(weights.keys.iter().copied()).collect())
+    });
     let keys: Vec<Vec<f64>> = keys.collect();
     let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts.iter().copied());
     let ends = cuts.iter().copied().chain([f64::INFINITY]);
     let mut farthest = 0.0f64;
     let boxes = starts.zip(ends).map(|(from, until)| {
-        let spans = parts
+        let spans = keys
             .iter()
-            .zip(&keys)
+            .enumerate()
             .flat_map(|(part, keys)| spans(keys, from, until).into_iter().map(move |span| (part, span)));
         union(spans.map(|(part, span)| {
             let swept = swept(part, span);
@@ -212,30 +237,14 @@ impl<'a> Shape<'a> {
 
     fn on_nodes(&self, nodes: &NodeAnimation, attachment: &Attachment) -> Sweep {
         let whole = Hung {
-            reach: self.reach,
             node_from_part: attachment.node_from_object,
             chain: chain(nodes, attachment.node),
             carrier: 0,
+            world_from_tree: attachment.world_from_tree,
         };
-        sweep(&[whole], self.mode, self.middle, |whole, span| self.swept(whole, span))
-    }
-
-    /// See the head of this file.
-    fn swept(&self, whole: &Hung<'_>, span: Span) -> Swept {
-        let from = if self.in_place() { self.middle } else { DVec3::ZERO };
-        let mut carried = whole.begin(from, self.in_place());
-        carried.up(&whole.chain, span, self.in_place());
-        carried.up_to_world(whole, self.in_place());
-        let rounding = ROUNDING * (whole.chain.len() + 2) as f64 * carried.farthest;
-        let place = DAffine3 { translation: carried.place.translation - carried.place.matrix3 * from, ..carried.place };
-        let bounds = self.widened(&place, carried.off + rounding, carried.longer);
-        Swept { bounds, farthest: carried.farthest + rounding }
-    }
-
-    /// Its bounds at a place, so much wider, and for rounding where it may be as much longer.
-    fn widened(&self, place: &DAffine3, by: f64, longer: f64) -> Aabb {
-        let by = by + self.reach.most_padding(longer);
-        self.reach.transformed(place).widened(DVec3::splat(by))
+        let middle = self.in_place().then_some(self.middle);
+        let swept = |span| swept_whole(self.reach, &whole, span, middle);
+        sweep(std::slice::from_ref(&whole), (&WeightTimes::default(), self.mode), self.middle, |_, span| swept(span))
     }
 
     fn in_orbit(&self, orbit: &Orbit) -> Sweep {
@@ -251,7 +260,7 @@ impl<'a> Shape<'a> {
         };
         let rounding = 4.0 * ROUNDING * farthest;
         let bounds = match turned {
-            None => self.widened(&DAffine3 { translation: centre + arm, ..base }, rounding, longer),
+            None => widened(self.reach, &DAffine3 { translation: centre + arm, ..base }, rounding, longer),
             Some(axis) => {
                 let by = rounding + self.reach.most_padding(longer);
                 let round = round(axis, &self.corners.map(|corner| base.matrix3 * corner + arm));
@@ -261,6 +270,25 @@ impl<'a> Shape<'a> {
         let boxes = vec![union([bounds.widened(bob)].into_iter())];
         Sweep { cuts: Vec::new(), boxes, middle: self.middle, farthest: farthest + rounding }
     }
+}
+
+/// Computes where an object of one part can be within a span; see the head of this file. With a `middle` the object turns about that
+/// point, and does not move.
+fn swept_whole(reach: &Reach, whole: &Hung<'_>, span: Span, middle: Option<DVec3>) -> Swept {
+    let (from, turned) = (middle.unwrap_or(DVec3::ZERO), middle.is_some());
+    let mut carried = whole.begin(reach, from, turned);
+    carried.up(&whole.chain, span, turned);
+    carried.up_to_world(whole, turned);
+    let rounding = ROUNDING * (whole.chain.len() + 2) as f64 * carried.farthest;
+    let place = DAffine3 { translation: carried.place.translation - carried.place.matrix3 * from, ..carried.place };
+    let bounds = widened(reach, &place, carried.off + rounding, carried.longer);
+    Swept { bounds, farthest: carried.farthest + rounding }
+}
+
+/// Computes bounds at a place, widened by `by`, and by the rounding of an object that is stretched by up to `longer`.
+fn widened(reach: &Reach, place: &DAffine3, by: f64, longer: f64) -> Aabb {
+    let by = by + reach.most_padding(longer);
+    reach.transformed(place).widened(DVec3::splat(by))
 }
 
 /// The box of all that points pass as they go round an axis through the origin.

@@ -13,7 +13,7 @@ pub(crate) use viewpoint::back_and_up;
 
 use crate::animation::Motion;
 use crate::bounds::WorldBounds;
-use crate::camera::{Pose, Projection};
+use crate::camera::{Fit, Pose, Projection};
 use crate::error::SceneError;
 use crate::model::{Aabb, Scene};
 use glam::{DQuat, DVec3};
@@ -98,6 +98,8 @@ pub struct CameraPath {
     clock: Clock,
     /// Says what else a shot depends on: a recording's hash.
     detail: String,
+    /// The factor by which view volumes are higher than the camera's: see [`CameraPath::fitted`].
+    widening: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -166,7 +168,16 @@ impl CameraPath {
             }
         };
         let clock = Clock::of(&scene.motion);
-        Ok(CameraPath { name: name.into(), speed, whole: false, base, course, clock, detail: String::new() })
+        Ok(CameraPath {
+            name: name.into(),
+            speed,
+            whole: false,
+            base,
+            course,
+            clock,
+            detail: String::new(),
+            widening: 1.0,
+        })
     }
 
     /// A path recorded in a file, see [`record`] for the format. Scene time follows the recording if it has times,
@@ -182,7 +193,16 @@ impl CameraPath {
         let name = path.file_stem().map_or("recorded".into(), |stem| stem.to_string_lossy().into_owned());
         let detail = format!(" sha256={}", recording.fingerprint());
         let clock = Clock::Endless(RUN_S);
-        Ok(CameraPath { name, speed, whole: false, base, course: Course::Recorded(recording), clock, detail })
+        Ok(CameraPath {
+            name,
+            speed,
+            whole: false,
+            base,
+            course: Course::Recorded(recording),
+            clock,
+            detail,
+            widening: 1.0,
+        })
     }
 
     /// The name asked for, or the stem of the recorded file's name.
@@ -213,7 +233,24 @@ impl CameraPath {
     /// A line that differs between any two paths through the same scene, and stays the same from run to run: for cache keys.
     pub fn describe(&self) -> String {
         let whole = if self.whole { " whole" } else { "" };
-        format!("{} speed={:?}{whole}{}", self.name, self.speed, self.detail)
+        let wider = if self.widening == 1.0 { String::new() } else { format!(" wider={:?}", self.widening) };
+        format!("{} speed={:?}{whole}{}{wider}", self.name, self.speed, self.detail)
+    }
+
+    /// Returns the path for pictures of an aspect (width over height), with the rectangle of the scene's camera fitted into them.
+    pub fn fitted(self, aspect: f64, fit: Fit) -> Self {
+        let widening = fit.widening(self.base.aspect, aspect);
+        CameraPath { widening, ..self }
+    }
+
+    /// Width over height of the rectangle that the scene's camera was made for; none for any rectangle.
+    pub fn aspect(&self) -> Option<f64> {
+        self.base.aspect
+    }
+
+    /// The factor, 1 or more, by which view volumes are higher than the camera's because pictures are too narrow.
+    pub fn widening(&self) -> f64 {
+        self.widening
     }
 
     /// The same path, its whole way (times the speed) spread over each run, however few frames that has: for seeing all of
@@ -263,6 +300,7 @@ impl CameraPath {
                 };
             }
         }
+        shot.projection = shot.projection.widened(self.widening);
         shot
     }
 }
@@ -350,9 +388,11 @@ fn zoomed(projection: Projection, amount: f64) -> Projection {
 }
 
 fn check_speed(speed: f64) -> Result<(), SceneError> {
-    if speed.is_finite() && speed > 0.0 {
+    // At higher speeds rounding loses a frame's place on the way and its time in the scene; far higher ones overflow.
+    const FASTEST: f64 = 1e6;
+    if speed > 0.0 && speed <= FASTEST {
         return Ok(());
     }
-    let choices = "any number above 0, usually 1 to 16".into();
-    Err(SceneError::Unknown { kind: "camera speed", name: speed.to_string(), choices })
+    let choices = "any number above 0 and up to 1000000, usually 1 to 16".into();
+    Err(SceneError::Unknown { kind: "camera speed", name: crate::error::typed_number(speed), choices })
 }

@@ -4,14 +4,13 @@
 //! its weights. Joints hang on nodes of the scene's animation, below one node or on it, the *anchor*: the node that the object itself hangs on.
 //! So an object that walks as a whole has a transform as any other, and its vertices are bent within its own space, near its own origin.
 //!
-//! [`Scene::meshes`](crate::Scene::meshes) has the mesh as it is bent at time 0, in object space, with a declared box that holds it at every time: who knows nothing of skins
-//! is right at time 0, and has bounds that hold for ever. Who draws other times bends [`Skinned::rest`] by [`JointPlaces`].
+//! [`Deformed`](crate::Deformed) has the meshes that they bend.
 
 use crate::animation::{Motion, NodeAnimation};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-/// How many joints a vertex can have.
-pub const JOINTS_A_VERTEX: usize = 4;
+/// Most joints of a vertex: two sets of glTF's JOINTS_n.
+pub const JOINTS_A_VERTEX: usize = 8;
 
 /// A skeleton.
 #[derive(Clone, Debug)]
@@ -40,28 +39,25 @@ pub(crate) struct Joint {
     pub(crate) joint_from_rest: DAffine3,
 }
 
-/// A vertex at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A vertex of a deformed mesh at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RestVertex {
     /// In the mesh's own space.
     pub position: Vec3,
     /// Of unit length.
     pub normal: Vec3,
-    /// Joints that carry it, by their place in its skin.
+    /// Joints that carry it, as indices into its skin. Unused without a skin.
     pub joints: [u32; JOINTS_A_VERTEX],
-    /// How much of it each carries: none is negative, and they add up to 1, but for one rounding of the largest. See [`weights_of_sum_one`].
+    /// Share of the vertex that each joint carries. None is negative, and they add up to 1, but for one rounding of the largest: see
+    /// [`weights_of_sum_one`]. Joints of weight 0 cost nothing. Unused without a skin.
     pub weights: [f32; JOINTS_A_VERTEX],
 }
 
-/// An object whose mesh a skeleton bends.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Skinned {
-    /// Index into [`Scene::objects`](crate::Scene::objects). No other object has its mesh.
-    pub object: u32,
-    /// Index into [`Scene::skins`](crate::Scene::skins).
-    pub skin: u32,
-    /// Its mesh's vertices at rest.
-    pub rest: Vec<RestVertex>,
+impl RestVertex {
+    /// The joints that carry some of it, and the share of each.
+    pub fn influences(&self) -> impl Iterator<Item = (u32, f32)> + '_ {
+        self.joints.iter().copied().zip(self.weights).filter(|(_, weight)| *weight > 0.0)
+    }
 }
 
 impl Skin {
@@ -117,10 +113,6 @@ impl Skin {
     /// How many joints it has.
     pub fn joint_count(&self) -> usize {
         self.joints.len()
-    }
-
-    pub(crate) fn bones(&self) -> &[Bone] {
-        &self.bones
     }
 
     pub(crate) fn joints(&self) -> &[Joint] {
@@ -186,7 +178,7 @@ impl JointPlaces {
 pub fn weights_of_sum_one(weights: [f32; JOINTS_A_VERTEX]) -> [f32; JOINTS_A_VERTEX] {
     let sum: f64 = weights.iter().copied().map(f64::from).sum();
     if sum <= 0.0 {
-        return [1.0, 0.0, 0.0, 0.0];
+        return std::array::from_fn(|joint| if joint == 0 { 1.0 } else { 0.0 });
     }
     let mut parts = weights.map(|weight| (f64::from(weight) / sum) as f32);
     let largest = (1..parts.len()).fold(0, |largest, at| if parts[at] > parts[largest] { at } else { largest });
@@ -195,17 +187,21 @@ pub fn weights_of_sum_one(weights: [f32; JOINTS_A_VERTEX]) -> [f32; JOINTS_A_VER
     parts
 }
 
-/// A vertex bent by joints in these places, in `f64`; its normal, which turns by the cofactors of the mean matrix, has any length.
-pub(crate) fn bent(vertex: &RestVertex, places: &[DAffine3]) -> (DVec3, DVec3) {
+/// Computes the mean of the places of a vertex's joints, by their weights, in `f64`.
+pub(crate) fn mean_place(vertex: &RestVertex, places: &[DAffine3]) -> DAffine3 {
     let mut mean = DAffine3 { matrix3: DMat3::ZERO, translation: DVec3::ZERO };
-    for (joint, weight) in vertex.joints.iter().zip(vertex.weights) {
-        let (place, weight) = (&places[*joint as usize], f64::from(weight));
+    for (joint, weight) in vertex.influences() {
+        let (place, weight) = (&places[joint as usize], f64::from(weight));
         mean.matrix3 += place.matrix3 * weight;
         mean.translation += place.translation * weight;
     }
-    let DMat3 { x_axis, y_axis, z_axis } = mean.matrix3;
-    let cofactors = DMat3::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));
-    (mean.transform_point3(vertex.position.as_dvec3()), cofactors * vertex.normal.as_dvec3())
+    mean
+}
+
+/// Computes the matrix of cofactors, which turns normals where the given matrix moves points. It is right for mirrored and flattened
+/// places too; turned normals have any length.
+pub(crate) fn cofactors(DMat3 { x_axis, y_axis, z_axis }: DMat3) -> DMat3 {
+    DMat3::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis))
 }
 
 /// How far the sum of a vertex's weights may be from 1: half a step of the largest, and what summing up in `f64` may round.

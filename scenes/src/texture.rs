@@ -1,6 +1,8 @@
 //! Base colour textures: pixels in memory, and what a file's pictures become.
 
-use image::{ImageReader, Limits};
+mod webp;
+
+use image::{ColorType, ImageReader, Limits};
 use std::io::Cursor;
 
 /// Longest side of a picture that is read, in pixels.
@@ -34,21 +36,51 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Decodes a PNG or JPEG file.
+    /// Decodes a PNG, JPEG or WebP file. Alpha of 16 bits is rounded to 8.
     ///
     /// # Errors
     /// Why it could not be decoded, in one line.
     pub fn decode(name: String, file: &[u8]) -> Result<Self, String> {
+        Self::decode_for(name, file, None).map(|(texture, _)| texture)
+    }
+
+    /// Decodes a file for an alpha test: texels of 16 bits whose alpha is at least `least` are rounded to 8 bits that are, and all others to 8
+    /// bits that are not. Returns whether alpha has 16 bits, so that `least` matters.
+    ///
+    /// # Errors
+    /// The reason why it could not be decoded, in one line.
+    pub(crate) fn decode_for(name: String, file: &[u8], least: Option<f64>) -> Result<(Self, bool), String> {
+        if webp::is_webp(file) {
+            return Ok((webp::decode(name, file)?, false));
+        }
         let mut reader =
             ImageReader::new(Cursor::new(file)).with_guessed_format().map_err(|error| error.to_string())?;
         let mut limits = Limits::default();
         (limits.max_image_width, limits.max_image_height) = (Some(LONGEST_SIDE), Some(LONGEST_SIDE));
         limits.max_alloc = Some(MOST_BYTES);
         reader.limits(limits);
-        let picture = reader.decode().map_err(|error| error.to_string())?.into_rgba8();
-        let size = picture.dimensions().into();
-        let texels = picture.pixels().map(|pixel| pixel.0).collect();
-        Ok(Texture { name, size, texels, wrap: [Wrap::Repeat; 2] })
+        let picture = reader.decode().map_err(|error| error.to_string())?;
+        let size = [picture.width(), picture.height()];
+        let is_fine = matches!(picture.color(), ColorType::La16 | ColorType::Rgba16);
+        let fine = is_fine.then(|| picture.to_rgba16());
+        let picture = picture.into_rgba8();
+        let mut texels: Vec<[u8; 4]> = picture.pixels().map(|pixel| pixel.0).collect();
+        for (texel, fine) in texels.iter_mut().zip(fine.iter().flat_map(|fine| fine.pixels())) {
+            texel[3] = alpha_byte(fine.0[3], least);
+        }
+        Ok((Texture { name, size, texels, wrap: [Wrap::Repeat; 2] }, is_fine))
+    }
+
+    /// Returns the number of texels that a picture file declares.
+    pub(crate) fn texels_of(file: &[u8]) -> Result<usize, String> {
+        let (width, height) = if webp::is_webp(file) {
+            webp::dimensions(file)?
+        } else {
+            let reader =
+                ImageReader::new(Cursor::new(file)).with_guessed_format().map_err(|error| error.to_string())?;
+            reader.into_dimensions().map_err(|error| error.to_string())?
+        };
+        Ok(usize::try_from(u64::from(width) * u64::from(height)).unwrap_or(usize::MAX))
     }
 
     /// The same texels as a PNG file.
@@ -67,5 +99,37 @@ impl Texture {
         let [width, height] = self.size.map(u64::from);
         (width * height == 0 || width * height != self.texels.len() as u64)
             .then(|| format!("its texture '{}' has {} texels for {width}x{height}", self.name, self.texels.len()))
+    }
+}
+
+/// Alpha of 16 bits in 8, on the same side of `least`. Numbers that a file means to be equal differ by the rounding of `f32`, 2^-24 each.
+fn alpha_byte(alpha: u16, least: Option<f64>) -> u8 {
+    const MEANT_EQUAL: f64 = 1.0 / (1u32 << 22) as f64;
+    let exact = f64::from(alpha) / f64::from(u16::MAX);
+    let nearest = (255.0 * exact).round();
+    let byte = match least.map(|least| least * (1.0 - MEANT_EQUAL)) {
+        None => nearest,
+        Some(least) if exact >= least => nearest.max((255.0 * least).ceil()),
+        Some(least) => nearest.min((255.0 * least).ceil() - 1.0),
+    };
+    // `as` ends at 0 and at 255.
+    byte as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_of_16_bits_stays_on_its_side_of_the_cutoff() {
+        for (alpha, least) in
+            [(19_399, 0.2955), (19_464, 0.2975), (65_530, 1.0), (65_535, 1.0), (0, 0.0), (7, 1.5), (1, 1e-9)]
+        {
+            let there = f64::from(alpha) / 65_535.0 >= least;
+            assert_eq!(f64::from(alpha_byte(alpha, Some(least))) / 255.0 >= least, there, "{alpha} at {least}");
+        }
+        let meant = f64::from(128.0f32 / 255.0);
+        assert_eq!(alpha_byte(128 * 257, Some(meant)), 128, "equal but for the rounding of f32");
+        assert_eq!((alpha_byte(19_399, None), alpha_byte(65_535, None)), (75, 255));
     }
 }

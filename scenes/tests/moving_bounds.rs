@@ -7,8 +7,7 @@ use moving_support::{gpu_vertex, node, object, points, times, vector};
 use proptest::prelude::*;
 use scenes::animation::{AnimatedNode, Attachment, Interpolation, Local, NodeAnimation, Orbit, Track};
 use scenes::{
-    export_glb, import_bytes, Aabb, JointPlaces, Mesh, Motion, MovingBounds, MovingBoxes, Scene, SceneOptions,
-    WorldBounds,
+    export_glb, import_bytes, Aabb, Mesh, Motion, MovingBounds, MovingBoxes, Scene, SceneOptions, Shapes, WorldBounds,
 };
 use std::path::Path;
 
@@ -19,10 +18,10 @@ fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
     let (mut transforms, mut faults) = (Vec::new(), Vec::new());
     for seconds in times {
         scene.motion.transforms_at(*seconds, &mut transforms);
-        let joints = scene.joints_at(*seconds);
+        let shapes = scene.shapes_at(*seconds);
         for (moving, (object, transform)) in transforms.iter().enumerate() {
             let object = &scene.objects[*object as usize];
-            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, transform), &joints);
+            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, transform), &shapes);
             let farthest = boxes.farthest(moving).unwrap_or(f64::INFINITY);
             if transform.translation.abs().max_element() > farthest {
                 faults.push(format!("{mode:?}, {}, at {seconds}: its origin is beyond {farthest}", object.name));
@@ -71,9 +70,8 @@ fn motion() -> impl Strategy<Value = (Motion, Vec<f64>)> {
         let count = nodes.len();
         let nodes = nodes.into_iter().enumerate().map(hang).collect();
         let on = |node: usize| Attachment {
-            object: node as u32,
-            node,
             node_from_object: DAffine3::from_translation(offset * node as f64),
+            ..Attachment::new(node as u32, node)
         };
         let animation = NodeAnimation::new(nodes, (0..count).map(on).collect()).expect("a legal animation");
         (Motion::Nodes(animation), keys)
@@ -136,7 +134,7 @@ fn turning(interpolation: Interpolation, values: Vec<DQuat>) -> Scene {
         rotation: Some(Track::new(interpolation, times.collect(), values).expect("a legal track")),
         scale: None,
     };
-    let on = Attachment { object: 0, node: 0, node_from_object: DAffine3::IDENTITY };
+    let on = Attachment::new(0, 0);
     let animation = NodeAnimation::new(vec![node], vec![on]).expect("a legal animation");
     scene(vec![Vec3::ZERO, Vec3::X], Motion::Nodes(animation))
 }
@@ -152,7 +150,7 @@ fn a_box_around_the_keys_alone_is_caught() {
         keys = keys.union(bounds.of(0, &transforms[0].1));
     }
     let boxes = MovingBoxes::new(&scene, &bounds, MovingBounds::Union);
-    let union = boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &JointPlaces::default());
+    let union = boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &Shapes::default());
     scene.motion.transforms_at(0.75, &mut transforms);
     let vertex = gpu_vertex(&transforms[0].1, Vec3::X);
     assert!(!keys.contains(vertex) && union.contains(vertex), "{vertex}: {keys:?}, {union:?}");
@@ -190,14 +188,14 @@ fn the_four_ways_differ_as_the_chapter_says() {
         ),
         scale: None,
     };
-    let on = Attachment { object: 0, node: 0, node_from_object: DAffine3::IDENTITY };
+    let on = Attachment::new(0, 0);
     let animation = NodeAnimation::new(vec![node], vec![on]).expect("a legal animation");
     let scene = scene(vec![Vec3::ZERO, Vec3::new(1.0, 2.0, 0.1)], Motion::Nodes(animation));
     let bounds = WorldBounds::new(&scene);
     let mut transforms = Vec::new();
     let mut at = |mode, seconds: f64| {
         scene.motion.transforms_at(seconds, &mut transforms);
-        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &transforms[0].1), &JointPlaces::default())
+        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &transforms[0].1), &Shapes::default())
     };
     let width = |box_: Aabb| box_.max.x - box_.min.x;
     assert_eq!(at(MovingBounds::Union, 1.0), at(MovingBounds::Union, 7.0));
@@ -254,5 +252,5 @@ fn a_motion_that_is_not_finite_gives_a_box_that_is_not_valid() {
     let scene = scene(vec![Vec3::ONE], Motion::Orbits(vec![orbit]));
     let bounds = WorldBounds::new(&scene);
     let boxes = MovingBoxes::new(&scene, &bounds, MovingBounds::Union);
-    assert!(!boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &JointPlaces::default()).is_valid());
+    assert!(!boxes.at(0, 0.0, &bounds, (0, &DAffine3::IDENTITY), &Shapes::default()).is_valid());
 }

@@ -197,12 +197,55 @@ fn a_third_of_the_moving_boxes_move_and_nothing_else() {
 #[test]
 fn two_thirds_of_what_stands_among_the_walls_are_tentacles_and_each_sways() {
     let scene = make("tentacles", 0.5, 1);
-    assert_eq!((scene.objects.len(), scene.skinned.len()), (181, 120));
-    let bent: Vec<u32> = scene.skinned.iter().map(|skinned| skinned.object).collect();
-    assert_eq!(bent, scene.motion.dynamic_objects());
+    assert_eq!((scene.objects.len(), scene.deformed.len()), (181, 120));
+    let moving = scene.motion.dynamic_objects().into_iter();
+    let bent = moving.map(|object| scene.objects[object as usize].mesh);
+    assert!(bent.eq(scene.deformed.iter().map(|deformed| deformed.mesh)));
     let (now, later) = (scene.joints_at(0.0), scene.joints_at(1.5));
-    for skinned in &scene.skinned {
-        assert_ne!(now.of(skinned.skin), later.of(skinned.skin), "tentacle {}", skinned.object);
+    for skin in scene.deformed.iter().filter_map(|deformed| deformed.skin) {
+        assert_ne!(now.of(skin), later.of(skin), "tentacle {skin}");
+    }
+}
+
+#[test]
+fn two_thirds_of_what_swims_among_the_walls_are_jellyfish_and_each_changes_its_shape() {
+    let scene = make("jellyfish", 0.5, 1);
+    assert_eq!((scene.objects.len(), scene.deformed.len(), scene.skins.len()), (136, 90, 30));
+    let (now, later) = (scene.meshes_at(0.0), scene.meshes_at(1.5));
+    for deformed in &scene.deformed {
+        let mesh = deformed.mesh as usize;
+        assert!(now[mesh].positions != later[mesh].positions && now[mesh].normals != later[mesh].normals);
+        assert_eq!(now[mesh].positions, scene.meshes[mesh].positions, "a scene's meshes are those of time 0");
+    }
+    // Some swim, some stay where they are.
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    scene.motion.transforms_at(0.0, &mut before);
+    scene.motion.transforms_at(1.5, &mut after);
+    let moves = before.iter().zip(&after).filter(|(before, after)| before.1 != after.1).count();
+    assert!((40..80).contains(&moves), "{moves}");
+}
+
+#[test]
+fn the_hash_sees_every_change_of_a_morph() {
+    let base = make("jellyfish", 0.05, 1);
+    type Change = fn(&mut Scene);
+    let changes: [Change; 6] = [
+        |scene| scene.deformed[1].targets[2].displacements[3].position.x += 1e-6,
+        |scene| scene.deformed[1].targets[2].displacements[3].normal.x += 1e-6,
+        |scene| scene.deformed[1].targets[2].displacements[3].vertex += 1,
+        |scene| scene.deformed[1].targets[2].weight += 1,
+        |scene| scene.deformed[1].targets.swap(0, 1),
+        |scene| {
+            let Motion::Nodes(nodes) = &scene.motion else { panic!("jellyfish hang on nodes") };
+            let mut weights = nodes.weights().to_vec();
+            weights.swap(3, 4);
+            scene.motion = Motion::Nodes(nodes.clone().with_weights(weights));
+        },
+    ];
+    for (index, change) in changes.iter().enumerate() {
+        let mut scene = base.clone();
+        change(&mut scene);
+        assert_ne!(scene.content_hash(), base.content_hash(), "change {index}");
     }
 }
 
@@ -211,11 +254,11 @@ fn the_hash_sees_every_change_of_a_skeleton() {
     let base = make("tentacles", 0.05, 1);
     type Change = fn(&mut Scene);
     let changes: [Change; 6] = [
-        |scene| scene.skinned[1].rest[2].position.x += 1e-6,
-        |scene| scene.skinned[1].rest[2].normal = -scene.skinned[1].rest[2].normal,
-        |scene| scene.skinned[1].rest[2].joints.swap(0, 1),
-        |scene| scene.skinned[1].rest[30].weights.swap(0, 1),
-        |scene| scene.skinned.swap(0, 1),
+        |scene| scene.deformed[1].rest[2].position.x += 1e-6,
+        |scene| scene.deformed[1].rest[2].normal = -scene.deformed[1].rest[2].normal,
+        |scene| scene.deformed[1].rest[2].joints.swap(0, 1),
+        |scene| scene.deformed[1].rest[30].weights.swap(0, 1),
+        |scene| scene.deformed.swap(0, 1),
         |scene| scene.skins.swap(0, 1),
     ];
     for (index, change) in changes.iter().enumerate() {
@@ -241,7 +284,7 @@ fn the_hash_sees_every_change_of_a_picture() {
         |scene| scene.objects[4].surface.single_sided = true,
         |scene| scene.objects[4].surface.texture = Some(0),
         |scene| scene.meshes[1].texture_coordinates = vec![Vec2::ZERO; scene.meshes[1].positions.len()],
-        |scene| scene.meshes[1].colours = vec![[255; 4]; scene.meshes[1].positions.len()],
+        |scene| scene.meshes[1].colours = vec![[1.0; 4]; scene.meshes[1].positions.len()],
         |scene| scene.textures = vec![Texture { size: [1, 1], texels: vec![[9; 4]], ..Texture::default() }],
         |scene| scene.objects.swap(4, 5),
         |scene| scene.cameras[0].pose.position.x += 1e-9,

@@ -140,8 +140,9 @@ impl Stage for Masked {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -188,8 +189,10 @@ pub struct MaskedVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -197,7 +200,8 @@ const _: () = {
     assert!(std::mem::offset_of!(MaskedVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(MaskedVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(MaskedVertex, tint) == 24);
-    assert!(size_of::<MaskedVertex>() == 28);
+    assert!(std::mem::offset_of!(MaskedVertex, alpha) == 28);
+    assert!(size_of::<MaskedVertex>() == 32);
 };
 
 /// One instance of [`Masked`].
@@ -268,8 +272,9 @@ impl Stage for MaskedAndItems {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -316,8 +321,10 @@ pub struct MaskedAndItemsVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -325,7 +332,8 @@ const _: () = {
     assert!(std::mem::offset_of!(MaskedAndItemsVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(MaskedAndItemsVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(MaskedAndItemsVertex, tint) == 24);
-    assert!(size_of::<MaskedAndItemsVertex>() == 28);
+    assert!(std::mem::offset_of!(MaskedAndItemsVertex, alpha) == 28);
+    assert!(size_of::<MaskedAndItemsVertex>() == 32);
 };
 
 /// One instance of [`MaskedAndItems`].
@@ -400,8 +408,9 @@ impl Stage for MaskedFlags {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -448,8 +457,10 @@ pub struct MaskedFlagsVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -457,7 +468,8 @@ const _: () = {
     assert!(std::mem::offset_of!(MaskedFlagsVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(MaskedFlagsVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(MaskedFlagsVertex, tint) == 24);
-    assert!(size_of::<MaskedFlagsVertex>() == 28);
+    assert!(std::mem::offset_of!(MaskedFlagsVertex, alpha) == 28);
+    assert!(size_of::<MaskedFlagsVertex>() == 32);
 };
 
 /// One instance of [`MaskedFlags`].
@@ -528,8 +540,9 @@ impl Stage for MaskedOverdraw {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -576,8 +589,10 @@ pub struct MaskedOverdrawVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -585,7 +600,8 @@ const _: () = {
     assert!(std::mem::offset_of!(MaskedOverdrawVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(MaskedOverdrawVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(MaskedOverdrawVertex, tint) == 24);
-    assert!(size_of::<MaskedOverdrawVertex>() == 28);
+    assert!(std::mem::offset_of!(MaskedOverdrawVertex, alpha) == 28);
+    assert!(size_of::<MaskedOverdrawVertex>() == 32);
 };
 
 /// One instance of [`MaskedOverdraw`].
@@ -1277,8 +1293,9 @@ impl Stage for Textured {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -1325,8 +1342,10 @@ pub struct TexturedVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -1334,7 +1353,8 @@ const _: () = {
     assert!(std::mem::offset_of!(TexturedVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(TexturedVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(TexturedVertex, tint) == 24);
-    assert!(size_of::<TexturedVertex>() == 28);
+    assert!(std::mem::offset_of!(TexturedVertex, alpha) == 28);
+    assert!(size_of::<TexturedVertex>() == 32);
 };
 
 /// One instance of [`Textured`].
@@ -1411,8 +1431,9 @@ impl Stage for TexturedAndFlags {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -1459,8 +1480,10 @@ pub struct TexturedAndFlagsVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -1468,7 +1491,8 @@ const _: () = {
     assert!(std::mem::offset_of!(TexturedAndFlagsVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(TexturedAndFlagsVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(TexturedAndFlagsVertex, tint) == 24);
-    assert!(size_of::<TexturedAndFlagsVertex>() == 28);
+    assert!(std::mem::offset_of!(TexturedAndFlagsVertex, alpha) == 28);
+    assert!(size_of::<TexturedAndFlagsVertex>() == 32);
 };
 
 /// One instance of [`TexturedAndFlags`].
@@ -1542,8 +1566,9 @@ impl Stage for TexturedAndItems {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -1590,8 +1615,10 @@ pub struct TexturedAndItemsVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -1599,7 +1626,8 @@ const _: () = {
     assert!(std::mem::offset_of!(TexturedAndItemsVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(TexturedAndItemsVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(TexturedAndItemsVertex, tint) == 24);
-    assert!(size_of::<TexturedAndItemsVertex>() == 28);
+    assert!(std::mem::offset_of!(TexturedAndItemsVertex, alpha) == 28);
+    assert!(size_of::<TexturedAndItemsVertex>() == 32);
 };
 
 /// One instance of [`TexturedAndItems`].
@@ -1679,8 +1707,9 @@ impl Stage for TexturedItemsAndFlags {
             VertexAttribute { name: "normal_snorm16", location: 1, format: VertexFormat::Snorm16x2, offset: 12 },
             VertexAttribute { name: "coordinates", location: 8, format: VertexFormat::Float2, offset: 16 },
             VertexAttribute { name: "tint", location: 9, format: VertexFormat::Uint, offset: 24 },
+            VertexAttribute { name: "alpha", location: 10, format: VertexFormat::Float, offset: 28 },
         ],
-        vertex_stride: 28,
+        vertex_stride: 32,
         instance: &[
             VertexAttribute { name: "column_x", location: 2, format: VertexFormat::Float3, offset: 0 },
             VertexAttribute { name: "column_y", location: 3, format: VertexFormat::Float3, offset: 12 },
@@ -1727,8 +1756,10 @@ pub struct TexturedItemsAndFlagsVertex {
     pub normal_snorm16: [i16; 2],
     /// On the texture.
     pub coordinates: [f32; 2],
-    /// RGBA8, linear: what the colour is multiplied by.
+    /// RGB8, linear: the factor of the colour.
     pub tint: u32,
+    /// The factor of the material's alpha.
+    pub alpha: f32,
 }
 
 const _: () = {
@@ -1736,7 +1767,8 @@ const _: () = {
     assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, normal_snorm16) == 12);
     assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, coordinates) == 16);
     assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, tint) == 24);
-    assert!(size_of::<TexturedItemsAndFlagsVertex>() == 28);
+    assert!(std::mem::offset_of!(TexturedItemsAndFlagsVertex, alpha) == 28);
+    assert!(size_of::<TexturedItemsAndFlagsVertex>() == 32);
 };
 
 /// One instance of [`TexturedItemsAndFlags`].

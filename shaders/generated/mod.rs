@@ -106,4 +106,5 @@ pub const STAGES: &[&StageInfo] = &[
     <world::MoveObjects as Stage>::INFO,
     <world::MoveTransforms as Stage>::INFO,
     <world::SkinVertices as Stage>::INFO,
+    <world::TurnObjects as Stage>::INFO,
 ];

@@ -311,6 +311,25 @@ const _: () = {
     assert!(size_of::<CullView>() == 104);
 };
 
+/// The effect of one morph target on one vertex, at weight 1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Displacement {
+    /// Index of its target's weight.
+    pub weight: u32,
+    /// `position` in GLSL.
+    pub position: [f32; 3],
+    /// `normal` in GLSL.
+    pub normal: [f32; 3],
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(Displacement, weight) == 0);
+    assert!(std::mem::offset_of!(Displacement, position) == 4);
+    assert!(std::mem::offset_of!(Displacement, normal) == 16);
+    assert!(size_of::<Displacement>() == 28);
+};
+
 /// VkDrawIndexedIndirectCommand. first_instance is the object's index.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -380,7 +399,23 @@ const _: () = {
     assert!(size_of::<FlareBlock>() == 28);
 };
 
-/// Where a joint puts vertices at rest, seen from their object, this frame.
+/// One joint that carries a vertex.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Influence {
+    /// Index of its JointPlace.
+    pub place: u32,
+    /// Greater than 0; those of a vertex add up to 1.
+    pub share: f32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(Influence, place) == 0);
+    assert!(std::mem::offset_of!(Influence, share) == 4);
+    assert!(size_of::<Influence>() == 8);
+};
+
+/// The place of a joint this frame: object from rest.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct JointPlace {
@@ -418,21 +453,25 @@ const _: () = {
     assert!(size_of::<LocalBox>() == 24);
 };
 
-/// Where a base colour texture lies among the texels, and where what it covers is not there.
+/// Where a base colour texture lies among the texels, and where its surface has holes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Material {
     /// Of level 0; each level follows the one before, with half of its texels a side.
     pub first_texel: u32,
-    /// `width` in GLSL.
+    /// Of level 0, in texels.
     pub width: u32,
-    /// `height` in GLSL.
+    /// Of level 0, in texels.
     pub height: u32,
-    /// 0: no texture.
+    /// Levels: 0 for no texture; wrap: WRAP_\*, x in the lowest bits.
     pub levels: u32,
-    /// WRAP_\*, x in the lowest bits.
+    /// Levels: 0 for no texture; wrap: WRAP_\*, x in the lowest bits.
     pub wrap: u32,
-    /// `cutoff` in GLSL.
+    /// Alpha of the material, times that of the vertices if it is the same for the whole mesh.
+    pub alpha: f32,
+    /// 1 where the vertices of a mesh differ in alpha.
+    pub alpha_varies: u32,
+    /// The surface is there where alpha is at least this. Allows for the rounding of alpha.
     pub cutoff: f32,
 }
 
@@ -442,8 +481,10 @@ const _: () = {
     assert!(std::mem::offset_of!(Material, height) == 8);
     assert!(std::mem::offset_of!(Material, levels) == 12);
     assert!(std::mem::offset_of!(Material, wrap) == 16);
-    assert!(std::mem::offset_of!(Material, cutoff) == 20);
-    assert!(size_of::<Material>() == 24);
+    assert!(std::mem::offset_of!(Material, alpha) == 20);
+    assert!(std::mem::offset_of!(Material, alpha_varies) == 24);
+    assert!(std::mem::offset_of!(Material, cutoff) == 28);
+    assert!(size_of::<Material>() == 32);
 };
 
 /// Where a mesh lies in the shared index and vertex buffers.
@@ -597,7 +638,7 @@ const _: () = {
     assert!(size_of::<Reprojection>() == 64);
 };
 
-/// A vertex that joints carry, at rest.
+/// A vertex of a deformed mesh at rest. Its influences and displacements lie side by side in buffers that all vertices share.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct RestVertex {
@@ -605,18 +646,24 @@ pub struct RestVertex {
     pub position: [f32; 3],
     /// `normal` in GLSL.
     pub normal: [f32; 3],
-    /// Places of JointPlace.
-    pub joints: [u32; 4],
-    /// None negative; they add up to 1.
-    pub weights: [f32; 4],
+    /// `first_influence` in GLSL.
+    pub first_influence: u32,
+    /// 0: no skeleton bends it.
+    pub influence_count: u32,
+    /// `first_displacement` in GLSL.
+    pub first_displacement: u32,
+    /// `displacement_count` in GLSL.
+    pub displacement_count: u32,
 }
 
 const _: () = {
     assert!(std::mem::offset_of!(RestVertex, position) == 0);
     assert!(std::mem::offset_of!(RestVertex, normal) == 12);
-    assert!(std::mem::offset_of!(RestVertex, joints) == 24);
-    assert!(std::mem::offset_of!(RestVertex, weights) == 40);
-    assert!(size_of::<RestVertex>() == 56);
+    assert!(std::mem::offset_of!(RestVertex, first_influence) == 24);
+    assert!(std::mem::offset_of!(RestVertex, influence_count) == 28);
+    assert!(std::mem::offset_of!(RestVertex, first_displacement) == 32);
+    assert!(std::mem::offset_of!(RestVertex, displacement_count) == 36);
+    assert!(size_of::<RestVertex>() == 40);
 };
 
 /// A node of the tree. Children lie side by side. Positions are relative to the tree's own origin.
@@ -754,6 +801,22 @@ const _: () = {
     assert!(std::mem::offset_of!(TreeNode, is_leaf) == 48);
     assert!(std::mem::offset_of!(TreeNode, object_count) == 52);
     assert!(size_of::<TreeNode>() == 56);
+};
+
+/// `TurnedObject` in GLSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TurnedObject {
+    /// `object` in GLSL.
+    pub object: u32,
+    /// Its mesh this frame.
+    pub mesh: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TurnedObject, object) == 0);
+    assert!(std::mem::offset_of!(TurnedObject, mesh) == 4);
+    assert!(size_of::<TurnedObject>() == 8);
 };
 
 /// What one frame looks through. Positions that the matrix takes are relative to the camera and unrotated.

@@ -117,14 +117,20 @@ const _: () = {
     assert!(size_of::<MoveTransformsPush>() == 4);
 };
 
-/// Puts each vertex that joints carry where the mean of their places puts it, and turns its normal (glTF 2.0, 3.7.3.3).
-/// Bounds allow for what this rounds: scenes/src/moving/bent.rs counts the operations. Twin: culling/src/world/twin.rs.
+/// Displaces each vertex of a deformed mesh by morph targets, then bends it by the mean place of its joints (glTF 2.0, 3.7.2.2 and 3.7.3.3).
+/// Bounds allow for this rounding: scenes/src/moving/bent.rs and morphed.rs count the operations. Twin: culling/src/world/twin.rs.
 #[derive(Clone, Copy, Debug)]
 pub struct SkinVertices {
     /// `rest` in GLSL.
     pub rest: BufferRef<types::RestVertex>,
+    /// `influences` in GLSL.
+    pub influences: BufferRef<types::Influence>,
+    /// `displacements` in GLSL.
+    pub displacements: BufferRef<types::Displacement>,
     /// `places` in GLSL.
     pub places: BufferRef<types::JointPlace>,
+    /// Weights of morph targets, indexed by weight.
+    pub weights: BufferRef<f32>,
     /// Vertices that begin with a position and a normal, whatever follows.
     pub vertices: BufferRef<u32>,
     /// `vertex_count` in GLSL.
@@ -144,8 +150,11 @@ impl Stage for SkinVertices {
         }],
         bindings: &[
             BindingInfo { name: "rest", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "places", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
-            BindingInfo { name: "vertices", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "influences", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "displacements", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "places", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "weights", binding: 4, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "vertices", binding: 5, kind: BindingKind::StorageBuffer, access: Access::Write },
         ],
         push_size: 12,
         constants: &[],
@@ -165,7 +174,14 @@ impl Stage for SkinVertices {
         };
         BoundStage::new(
             Self::INFO,
-            vec![self.rest.into(), self.places.into(), self.vertices.into()],
+            vec![
+                self.rest.into(),
+                self.influences.into(),
+                self.displacements.into(),
+                self.places.into(),
+                self.weights.into(),
+                self.vertices.into(),
+            ],
             bytemuck::bytes_of(&push),
             vec![],
         )
@@ -187,4 +203,67 @@ const _: () = {
     assert!(std::mem::offset_of!(SkinVerticesPush, first_word) == 4);
     assert!(std::mem::offset_of!(SkinVerticesPush, stride_words) == 8);
     assert!(size_of::<SkinVerticesPush>() == 12);
+};
+
+/// Gives objects that have turned inside out the index range whose triangles go the other way round (glTF 2.0, 3.7.4).
+/// Twin: culling/src/world/twin.rs.
+#[derive(Clone, Copy, Debug)]
+pub struct TurnObjects {
+    /// `turned` in GLSL.
+    pub turned: BufferRef<types::TurnedObject>,
+    /// `meshes` in GLSL.
+    pub meshes: BufferRef<types::MeshRange>,
+    /// The mesh of each object, indexed by object.
+    pub object_meshes: BufferRef<u32>,
+    /// A command for each object, indexed by object. Both ranges of an object have the same vertices and as many indices.
+    pub all_commands: BufferRef<types::DrawCommand>,
+    /// `object_count` in GLSL.
+    pub object_count: u32,
+}
+
+impl Stage for TurnObjects {
+    const INFO: &'static StageInfo = &StageInfo {
+        name: "world/turn_objects",
+        modules: &[ShaderModule {
+            kind: ShaderKind::Compute,
+            spirv: include_bytes!("spirv/world/turn_objects.comp.spv"),
+        }],
+        bindings: &[
+            BindingInfo { name: "turned", binding: 0, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "meshes", binding: 1, kind: BindingKind::StorageBuffer, access: Access::Read },
+            BindingInfo { name: "object_meshes", binding: 2, kind: BindingKind::StorageBuffer, access: Access::Write },
+            BindingInfo { name: "all_commands", binding: 3, kind: BindingKind::StorageBuffer, access: Access::Write },
+        ],
+        push_size: 4,
+        constants: &[],
+        local_size: [64, 1, 1],
+        vertex: &[],
+        vertex_stride: 0,
+        instance: &[],
+        instance_stride: 0,
+        outputs: &[],
+    };
+
+    fn bind(&self) -> BoundStage {
+        let push = TurnObjectsPush { object_count: self.object_count };
+        BoundStage::new(
+            Self::INFO,
+            vec![self.turned.into(), self.meshes.into(), self.object_meshes.into(), self.all_commands.into()],
+            bytemuck::bytes_of(&push),
+            vec![],
+        )
+    }
+}
+
+impl ComputeStage for TurnObjects {}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TurnObjectsPush {
+    object_count: u32,
+}
+
+const _: () = {
+    assert!(std::mem::offset_of!(TurnObjectsPush, object_count) == 0);
+    assert!(size_of::<TurnObjectsPush>() == 4);
 };

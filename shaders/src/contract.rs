@@ -110,6 +110,8 @@ pub struct ShaderModule {
 /// How a vertex attribute lies in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexFormat {
+    /// One `f32`.
+    Float,
     /// Two `f32`.
     Float2,
     /// Three `f32`.

@@ -11,6 +11,7 @@ pub mod hazards;
 pub mod lab;
 pub mod laws;
 pub mod occludees;
+pub mod oracle;
 pub mod replaced;
 pub mod sessions;
 
@@ -21,7 +22,7 @@ pub use sightline::stress::{worlds, Case, Random};
 /// True if a setting takes its turn at a case: one in `of` does, each setting at some cases and each case with some settings;
 /// all do if SIGHTLINE_STRESS_CASES is set. `sightline stress` runs settings by chance at many more worlds.
 pub fn takes_turn(setting: usize, case: usize, of: usize) -> bool {
-    std::env::var_os("SIGHTLINE_STRESS_CASES").is_some() || (setting + case) % of == 0
+    std::env::var_os("SIGHTLINE_STRESS_CASES").is_some() || (setting + case).is_multiple_of(of)
 }
 
 /// Fails with every fault on a line of its own.

@@ -41,7 +41,7 @@ pub fn open_at_speed_one(gpu: &Gpu, run: (&str, f64, &str), frames: usize) -> Se
 }
 
 fn opened(gpu: &Gpu, (scene, scale, path): (&str, f64, &str), frames: usize, whole_path: bool) -> Session {
-    let path = Some(path.to_owned());
+    let path = Some(path.into());
     let size = [320, 180];
     let options =
         SessionOptions { scene: scene.into(), scale, path, whole_path, frames, size, ..SessionOptions::default() };

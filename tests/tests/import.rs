@@ -22,7 +22,8 @@ fn open(gpu: &engine::Gpu, file: &str, frames: usize) -> Session {
     let scene = format!("{FOLDER}/{file}");
     assert!(Path::new(&scene).is_file(), "{scene} is missing: install assimp-testmodels (tools/setup.sh does)");
     let size = [160, 120];
-    let options = SessionOptions { scene: scene.clone(), frames, size, whole_path: true, ..SessionOptions::default() };
+    let options =
+        SessionOptions { scene: scene.clone().into(), frames, size, whole_path: true, ..SessionOptions::default() };
     let good = |session: anyhow::Result<Session>| session.unwrap_or_else(|error| panic!("{scene}: {error:#}"));
     let session = good(Session::on(gpu, options.clone()));
     // Flat ones show nothing from behind, where the path leads too; that is what tests/materials.rs is for.
@@ -34,7 +35,7 @@ fn open(gpu: &engine::Gpu, file: &str, frames: usize) -> Session {
 fn covered(session: &mut Session) -> usize {
     let images = draw_everything(session, 0).unwrap();
     if let Some(folder) = std::env::var_os("SIGHTLINE_TEST_PICTURES") {
-        let name = session.options().scene.rsplit('/').next().unwrap_or_default().to_owned() + ".png";
+        let name = session.options().scene.with_extension("png").file_name().unwrap_or_default().to_owned();
         sightline::pictures::png_out::Picture::colour(&images).write(&Path::new(&folder).join(name)).unwrap();
     }
     images.items.iter().filter(|item| **item != sightline::measures::metrics::NO_ITEM).count()

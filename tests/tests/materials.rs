@@ -63,7 +63,7 @@ fn what_lies_behind_a_hole_is_visible_and_behind_what_is_solid_not() {
     assert_eq!(seen(&gpu, &behind(faint(0.4))), [false, true], "one alpha, below the cutoff");
     assert_eq!(seen(&gpu, &behind(faint(0.5))), [true, false], "one alpha, not below it");
     let tint = |scene: &mut Scene| {
-        scene.meshes[0].colours = vec![[255, 255, 255, 10]; 4];
+        scene.meshes[0].colours = vec![[1.0, 1.0, 1.0, 0.04]; 4];
         scene.objects[WALL].masked = true;
     };
     assert_eq!(seen(&gpu, &behind(tint)), [false, true], "colours of vertices have alpha too");

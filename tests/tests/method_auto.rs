@@ -61,7 +61,7 @@ fn film_where_woc_is_cheap(
 ) -> (Vec<String>, Vec<Drawn>, RunTruth) {
     const FRAMES: usize = 40;
     let gpu = gpu();
-    let (scene, path) = (scene.to_owned(), Some(path.to_owned()));
+    let (scene, path) = (scene.into(), Some(path.into()));
     let size = [320, 180];
     let run = SessionOptions { scene, path, scale, speed, frames: FRAMES, size, ..SessionOptions::default() };
     let mut session = Session::on(&gpu, run).unwrap();

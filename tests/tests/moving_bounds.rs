@@ -27,7 +27,7 @@ fn file() -> Scene {
 }
 
 fn session(gpu: &engine::Gpu, scene: Scene, path: &str, bounds: MovingBounds, frames: usize) -> Session {
-    let path = Some(path.to_owned());
+    let path = Some(path.into());
     let options =
         SessionOptions { path, whole_path: true, frames, size: [160, 90], bounds, ..SessionOptions::default() };
     Session::with_scene(gpu, scene, options).unwrap()

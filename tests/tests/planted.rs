@@ -52,7 +52,7 @@ struct Broken {
 
 fn make(setup: &Setup<'_>, defect: Defect) -> culling::Result<Box<dyn Method>> {
     let (gpu, world) = (setup.gpu, setup.world);
-    let mut commands = world.read_all_commands()?;
+    let mut commands = world.commands();
     let reversed: Vec<DrawCommand> = commands.iter().rev().copied().collect();
     if defect == Defect::DroppedDraw {
         // The wall of `worlds::walled`.
@@ -88,10 +88,10 @@ impl Method for Broken {
         f.clear(target);
         match self.defect {
             Defect::DroppedDraw => world.draw_commands(f, self.commands.all(), view, target),
-            Defect::ReversedEachSecondFrame if self.frames % 2 == 0 => {
+            Defect::ReversedEachSecondFrame if self.frames.is_multiple_of(2) => {
                 world.draw_commands(f, self.reversed.all(), view, target)
             }
-            Defect::ReversedEachSecondInstance if self.instance % 2 == 0 => {
+            Defect::ReversedEachSecondInstance if self.instance.is_multiple_of(2) => {
                 world.draw_commands(f, self.reversed.all(), view, target)
             }
             Defect::ReversedEachSecondFrame | Defect::ReversedEachSecondInstance => world.draw_all(f, view, target),

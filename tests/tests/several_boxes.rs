@@ -66,7 +66,7 @@ fn what_moves_is_not_lost_with_any_bounds() {
     let gpu = gpu();
     for bounds in MovingBounds::ALL {
         let scene = scenes::open("moving-boxes", &SceneOptions { scale: 0.5, ..SceneOptions::default() }).unwrap();
-        let path = Some("rotate".to_owned());
+        let path = Some("rotate".into());
         let options =
             SessionOptions { path, whole_path: true, frames: 4, size: [160, 90], bounds, ..SessionOptions::default() };
         let mut session = Session::with_scene(&gpu, scene, options).unwrap();

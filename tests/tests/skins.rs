@@ -1,12 +1,11 @@
-//! Meshes that skeletons bend: the device bends them as its twin does, exact methods lose nothing of them whichever way their bounds are had, and
-//! what stays as it was is not bent again.
+//! Deformed meshes: the device deforms them like its twin, exact methods lose nothing in any of the four ways of `--bounds`, and shapes
+//! that stay the same are not written again.
 
-use culling::world::twin;
 use culling::{Shading, World};
 use glam::Vec3;
 use harness::sessions::faults;
-use harness::{assert_caught, assert_none, gpu};
-use scenes::animation::{AnimatedNode, Local, NodeAnimation};
+use harness::{assert_caught, assert_none, gpu, laws, worlds, Case, Subject};
+use scenes::animation::{AnimatedNode, Interpolation, Local, NodeAnimation, Track};
 use scenes::{import, Motion, MovingBounds, Scene, SceneOptions};
 use shaders::draw::ObjectsVertex;
 use sightline::run::session::{Session, SessionOptions};
@@ -32,45 +31,90 @@ fn tentacles(scale: f64) -> Scene {
     scenes::open("tentacles", &SceneOptions { scale, seed: 1, ..SceneOptions::default() }).unwrap()
 }
 
+fn jellyfish(scale: f64) -> Scene {
+    scenes::open("jellyfish", &SceneOptions { scale, seed: 1, ..SceneOptions::default() }).unwrap()
+}
+
+/// Two animated targets on a node that stays where it is.
+fn morph_cube() -> Scene {
+    let file = "/usr/share/assimp/models/glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf";
+    import(Path::new(file)).expect("install assimp-testmodels")
+}
+
 fn simple_skin() -> Scene {
     import(Path::new("/usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf")).expect("install assimp-testmodels")
 }
 
 fn session(gpu: &engine::Gpu, scene: Scene, path: &str, bounds: MovingBounds) -> Session {
-    let path = Some(path.to_owned());
+    let path = Some(path.into());
     let options =
         SessionOptions { path, whole_path: true, frames: 5, size: [160, 90], bounds, ..SessionOptions::default() };
     Session::with_scene(gpu, scene, options).unwrap()
 }
 
-#[test]
-fn what_skeletons_bend_is_never_lost() {
+fn lost_of(scene: &Scene) -> Vec<String> {
     let gpu = gpu();
     let mut lost = Vec::new();
     for mode in MovingBounds::ALL {
         for path in ["walk", "rotate"] {
-            let mut session = session(&gpu, tentacles(0.3), path, mode);
+            let mut session = session(&gpu, scene.clone(), path, mode);
             for (method, set) in METHODS {
                 lost.extend(faults(&mut session, method, set));
             }
         }
     }
-    assert_none(&lost);
+    lost
+}
+
+#[test]
+fn what_skeletons_bend_is_never_lost() {
+    assert_none(&lost_of(&tentacles(0.3)));
+}
+
+#[test]
+fn what_morph_targets_displace_is_never_lost() {
+    assert_none(&lost_of(&jellyfish(0.3)));
+}
+
+/// Bells that change their shapes while the camera goes about, and while it stands still.
+fn deforming_case() -> Case {
+    let scene = jellyfish(0.15);
+    let camera = &scene.cameras[0];
+    let mut shots = worlds::wander(camera.pose.position, glam::DVec3::Y, camera.projection);
+    shots.iter_mut().enumerate().for_each(|(frame, shot)| shot.seconds = 0.7 * (frame / 2) as f64);
+    Case::new("jellyfish", scene, shots)
+}
+
+#[test]
+fn the_laws_hold_of_deformed_meshes() {
+    let gpu = gpu();
+    let case = deforming_case();
+    let mut faults = Vec::new();
+    for subject in ["frustum", "hzb", "roc", "eovc"].map(Subject::named) {
+        faults.extend(laws::skipping_changes_no_pixel(&gpu, &subject, &case));
+        faults.extend(laws::two_runs_give_the_same_bytes(&gpu, &subject, &case));
+        faults.extend(laws::a_resize_hides_nothing(&gpu, &subject, &case));
+        faults.extend(laws::a_camera_cut_hides_nothing(&gpu, &subject, &case));
+        faults.extend(laws::decisions_do_not_depend_on_the_pass(&gpu, &subject, &case));
+    }
+    assert_none(&faults);
 }
 
 /// All objects bent, so that there is nothing whose mesh lies before them; and a file.
 #[test]
 fn a_file_of_nothing_else_is_never_lost() {
     let gpu = gpu();
-    for mode in MovingBounds::ALL {
-        let mut session = session(&gpu, simple_skin(), "closing-in", mode);
-        for (method, set) in METHODS {
-            assert_none(&faults(&mut session, method, set));
+    for scene in [simple_skin(), morph_cube()] {
+        for mode in MovingBounds::ALL {
+            let mut session = session(&gpu, scene.clone(), "closing-in", mode);
+            for (method, set) in METHODS {
+                assert_none(&faults(&mut session, method, set));
+            }
         }
     }
 }
 
-/// The scene with its skeletons as they are at time 0, for ever.
+/// The scene with its skeletons and weights as they are at time 0, for ever.
 fn frozen(mut scene: Scene) -> Scene {
     let Motion::Nodes(nodes) = &scene.motion else { panic!("skeletons are of nodes") };
     let still = |node: &AnimatedNode| {
@@ -83,8 +127,13 @@ fn frozen(mut scene: Scene) -> Scene {
         AnimatedNode { local, translation: None, rotation: None, scale: None, ..node.clone() }
     };
     let frozen = NodeAnimation::new(nodes.nodes().iter().map(still).collect(), nodes.objects().to_vec()).unwrap();
-    scene.motion = Motion::Nodes(frozen);
+    let weights = nodes.weights().iter().map(|track| constant(track.at(0.0)));
+    scene.motion = Motion::Nodes(frozen.with_weights(weights.collect()));
     scene
+}
+
+fn constant(weight: f64) -> Track<f64> {
+    Track::new(Interpolation::Step, vec![0.0], vec![weight]).unwrap()
 }
 
 /// Bounds of the pose of time 0, taken for those of all times: what bends out of them is lost.
@@ -98,12 +147,14 @@ fn bounds_of_the_first_pose_are_caught() {
         size: [320, 180],
         ..SessionOptions::default()
     };
-    let mut planted = Session::with_scene(&gpu, tentacles(1.0), options).unwrap();
-    let frozen = frozen(tentacles(1.0));
-    // The scene that the world was made of rests, and so its bounds are those of time 0; what is drawn of it bends.
-    planted.world = World::with_bounds(&gpu, &frozen, Shading::of(&frozen), MovingBounds::Union).unwrap();
-    for method in ["hzb", "roc", "chc"] {
-        assert_caught(&faults(&mut planted, method, &[]), "false negatives");
+    for scene in [tentacles(1.0), jellyfish(1.0)] {
+        let frozen = frozen(scene.clone());
+        let mut planted = Session::with_scene(&gpu, scene, options.clone()).unwrap();
+        // The world was made of a scene at rest, so its bounds are those of time 0; its drawn meshes bend.
+        planted.world = World::with_bounds(&gpu, &frozen, Shading::of(&frozen), MovingBounds::Union).unwrap();
+        for method in ["hzb", "roc", "chc"] {
+            assert_caught(&faults(&mut planted, method, &[]), "false negatives");
+        }
     }
 }
 
@@ -111,8 +162,14 @@ fn bounds_of_the_first_pose_are_caught() {
 #[test]
 fn every_way_shows_the_same_pictures() {
     let gpu = gpu();
+    for scene in [tentacles(0.3), jellyfish(0.3)] {
+        same_pictures(&gpu, &scene);
+    }
+}
+
+fn same_pictures(gpu: &engine::Gpu, scene: &Scene) {
     let pictures = |mode| {
-        let mut session = session(&gpu, tentacles(0.3), "still", mode);
+        let mut session = session(gpu, scene.clone(), "still", mode);
         let truth = RunTruth::draw(&mut session, || ()).unwrap();
         let frames = 0..session.frames();
         frames.map(|frame| truth.frame(&mut session, frame).unwrap().images().clone()).collect::<Vec<_>>()
@@ -124,34 +181,32 @@ fn every_way_shows_the_same_pictures() {
     }
 }
 
-/// Vertices of bent objects as the device has them are those of the twin; all others are as they were.
+/// Asserts that the device's vertices of deformed meshes are those of the twin, and that all others are unchanged.
 fn assert_bent(world: &World, rest: &[ObjectsVertex], place: &str) {
-    let (found, bent) = (world.read_vertices().unwrap(), world.bent_vertices().unwrap().unwrap());
-    assert!(found[..bent.first] == rest[..bent.first], "{place}: what nothing bends has changed");
-    let expected = twin::skin_vertices(&bent.rest, &bent.places);
-    assert_eq!(found.len() - bent.first, expected.len());
-    for (found, expected) in found[bent.first..].iter().zip(&expected) {
+    let (found, (by, first)) = (world.read_vertices().unwrap(), world.deformers().unwrap().unwrap());
+    assert!(found[..first] == rest[..first], "{place}: what nothing deforms has changed");
+    let expected = by.skin_vertices();
+    assert_eq!(found.len() - first, expected.len());
+    for (found, expected) in found[first..].iter().zip(&expected) {
         assert_eq!(found.position.map(f32::to_bits), expected.position.map(f32::to_bits), "{place}");
     }
 }
 
-/// Vertices that skeletons bend, in the order of their meshes.
+/// Vertices of deformed meshes, in the order of these.
 fn host_shapes(scene: &Scene, seconds: f64) -> Vec<Vec3> {
-    let mut bent: Vec<_> = scene.skinned.iter().map(|it| scene.objects[it.object as usize].mesh as usize).collect();
-    bent.sort_unstable();
     let meshes = scene.meshes_at(seconds);
-    bent.iter().flat_map(|mesh| meshes[*mesh].positions.iter().copied()).collect()
+    scene.deformed.iter().flat_map(|it| meshes[it.mesh as usize].positions.iter().copied()).collect()
 }
 
 fn device_shapes(world: &World) -> Vec<Vec3> {
-    let first = world.bent_vertices().unwrap().unwrap().first;
+    let (_, first) = world.deformers().unwrap().unwrap();
     world.read_vertices().unwrap()[first..].iter().map(|vertex| vertex.position.into()).collect()
 }
 
 #[test]
 fn the_device_has_the_shapes_of_the_host() {
     let gpu = gpu();
-    for scene in [tentacles(0.2), simple_skin()] {
+    for scene in [tentacles(0.2), simple_skin(), jellyfish(0.2), morph_cube()] {
         let mut world = World::new(&gpu, &scene).unwrap();
         let rest = world.read_vertices().unwrap();
         for seconds in [0.0, 1.37, 5.9, 1.37] {
@@ -176,8 +231,8 @@ fn the_device_has_the_shapes_of_the_host() {
 fn textured_vertices_bend_too() {
     let gpu = gpu();
     let mut scene = tentacles(0.1);
-    let mesh = scene.objects[scene.skinned[0].object as usize].mesh as usize;
-    scene.meshes[mesh].colours = vec![[255, 200, 100, 255]; scene.meshes[mesh].positions.len()];
+    let mesh = scene.deformed[0].mesh as usize;
+    scene.meshes[mesh].colours = vec![[1.0, 0.8, 0.4, 1.0]; scene.meshes[mesh].positions.len()];
     assert_eq!(Shading::of(&scene), Shading::Textured);
     let options = || SessionOptions {
         path: Some("still".into()),
@@ -211,14 +266,14 @@ fn what_does_not_bend_is_not_bent() {
         &gpu,
         &scenes::open("moving-boxes", &SceneOptions { scale: 0.1, ..SceneOptions::default() }).unwrap(),
     );
-    assert_eq!(skipped(&still.unwrap(), &gpu), ["no skins"]);
+    assert_eq!(skipped(&still.unwrap(), &gpu), ["no deformed meshes"]);
     let scene = simple_skin();
     let mut world = World::new(&gpu, &scene).unwrap();
     let mut at = |seconds: f64| {
         world.set_time(&scene, seconds).unwrap();
         skipped(&world, &gpu)
     };
-    let (ran, still) = ([""; 0], ["no joint has moved"]);
+    let (ran, still) = ([""; 0], ["no joint and no weight has moved"]);
     assert_eq!(at(0.0), ran, "the first frame");
     assert_eq!(at(1.0), ran);
     assert_eq!(at(1.0), ran, "another method's frame of the same time costs the same");
@@ -227,4 +282,23 @@ fn what_does_not_bend_is_not_bent() {
     assert_eq!(at(7.0), still);
     assert_eq!(at(8.0), still);
     assert_eq!(at(2.0), ran);
+}
+
+/// Weights alone, on a node that does not move: steps of one second, then nothing.
+#[test]
+fn weights_that_stay_are_not_brought_again() {
+    let gpu = gpu();
+    let scene = morph_cube();
+    let (first, last) = scene.motion.duration_s();
+    let mut world = World::new(&gpu, &scene).unwrap();
+    let mut at = |seconds: f64| {
+        world.set_time(&scene, seconds).unwrap();
+        skipped(&world, &gpu)
+    };
+    let (ran, still) = ([""; 0], ["no joint and no weight has moved"]);
+    assert_eq!(at(first), ran, "the first frame");
+    assert_eq!(at(0.5 * (first + last)), ran);
+    assert_eq!(at(last), ran);
+    assert_eq!(at(last + 1.0), still);
+    assert_eq!(at(last + 2.0), still);
 }

@@ -101,7 +101,7 @@ struct Buggy {
 fn make(setup: &Setup<'_>, bug: Bug) -> culling::Result<Box<dyn Method>> {
     let (gpu, world) = (setup.gpu, setup.world);
     let instance = INSTANCES.replace(INSTANCES.get() + 1);
-    let mut commands = world.read_all_commands()?;
+    let mut commands = world.commands();
     if bug == Bug::UnsortedPacking && instance % 2 == 1 {
         commands.reverse();
     }

@@ -55,7 +55,7 @@ fn a_warp_needs_a_frame_before() {
 fn a_method_differs_from_none_as_it_does_from_the_truth() {
     let gpu = gpu();
     let size = [320, 180];
-    let (scene, path) = ("city-block".to_owned(), Some("walk".to_owned()));
+    let (scene, path) = ("city-block".into(), Some("walk".into()));
     let fast =
         SessionOptions { scene, path, scale: 0.05, speed: 16.0, frames: FRAMES, size, ..SessionOptions::default() };
     let mut session = Session::on(&gpu, fast).unwrap();

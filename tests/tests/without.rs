@@ -112,7 +112,7 @@ fn no_frame_waits_for_an_upload_of_its_own() {
     let _turn = gpu();
     let gpu = open(Extra::MappedMemory);
     let mut faults = Vec::new();
-    for case in [worlds::walled(200), moving("moving-boxes"), moving("tentacles")] {
+    for case in [worlds::walled(200), moving("moving-boxes"), moving("tentacles"), moving("jellyfish")] {
         let subjects = culling::METHODS.iter().map(|entry| Subject::named(entry.id));
         faults.extend(subjects.flat_map(|subject| late_uploads(&gpu, &subject, &case)));
     }

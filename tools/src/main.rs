@@ -1,6 +1,5 @@
 //! The `sightline` program: see `sightline --help`.
 
-use clap::Parser;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 use tracing::Level;
@@ -18,17 +17,9 @@ fn told() -> Targets {
 
 fn main() -> ExitCode {
     let colours = sightline::cli::coloured(std::io::stderr().is_terminal(), std::env::var_os("NO_COLOR").as_deref());
-    let lines = tracing_subscriber::fmt::layer().with_ansi(colours).with_writer(std::io::stderr);
+    // An error of standard error itself cannot be reported anywhere.
+    let lines =
+        tracing_subscriber::fmt::layer().with_ansi(colours).with_writer(std::io::stderr).log_internal_errors(false);
     tracing_subscriber::registry().with(lines.without_time().with_target(false).with_filter(told())).init();
-    // File names that are no text are left to clap, without a file of flags.
-    let Some(typed) = std::env::args_os().map(|word| word.into_string().ok()).collect() else {
-        return sightline::cli::commands::exit_code(sightline::cli::Cli::parse());
-    };
-    match sightline::cli::with_config(typed) {
-        Ok(words) => sightline::cli::commands::exit_code(sightline::cli::Cli::parse_from(words)),
-        Err(error) => {
-            eprintln!("sightline: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    sightline::cli::start(std::env::args_os().collect())
 }

@@ -27,7 +27,7 @@ impl Trust {
     pub fn begin(&mut self, used: bool) -> bool {
         self.barred = self.barred.saturating_sub(1);
         self.in_row = if used { self.in_row + 1 } else { 0 };
-        used && (self.in_row <= FIRST || self.in_row % EVERY == 0)
+        used && (self.in_row <= FIRST || self.in_row.is_multiple_of(EVERY))
     }
 
     /// What a checked frame would have missed, percent; none: that cannot be told.

@@ -197,7 +197,7 @@ pub(crate) fn eye_of(matrix: &DMat4) -> glam::DVec4 {
             let mut kept = (0..4).filter(|column| *column != skip).map(|column| row[column]);
             DVec3::new(kept.next().unwrap_or(0.0), kept.next().unwrap_or(0.0), kept.next().unwrap_or(0.0))
         };
-        part(x).dot(part(y).cross(part(w))) * if skip % 2 == 0 { 1.0 } else { -1.0 }
+        part(x).dot(part(y).cross(part(w))) * if skip.is_multiple_of(2) { 1.0 } else { -1.0 }
     };
     let eye = glam::DVec4::new(minor(0), minor(1), minor(2), minor(3));
     // A parallel projection's fourth minor is 0 but for rounding.

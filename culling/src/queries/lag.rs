@@ -61,7 +61,7 @@ impl Method for QueryLag {
         self.forget_what_left(&sorted);
         let mut frame = self.on.begin(f, (world, view), target, self.bounds.numbered(world))?;
         for InView { object, place, boxes } in sorted {
-            let due = (self.frame + u64::from(object)) % self.every == 0;
+            let due = (self.frame + u64::from(object)).is_multiple_of(self.every);
             match (place, self.visible[object as usize]) {
                 // "Skip occlusion testing for models that are too near the viewer" (29.6.2): the eye may be inside the box.
                 (Place::Near, _) => frame.draw(object)?,

@@ -43,7 +43,8 @@ pub(super) struct Asking {
     box_commands: Buffer<DrawCommand>,
     commands: Buffer<DrawCommand>,
     queries: OcclusionQueries,
-    all: Vec<DrawCommand>,
+    /// The number of objects of the world.
+    objects: usize,
     least_samples: u64,
     /// Since the last wait: boxes, the command of each query about boxes, and how many queries there are of both kinds.
     boxes: Vec<u32>,
@@ -73,7 +74,7 @@ impl Asking {
             box_commands: Buffer::new(gpu, &format!("{name}.box_commands"), MOST_QUERIES as usize, upload)?,
             commands: Buffer::new(gpu, &format!("{name}.commands"), setup.world.len(), upload)?,
             queries: OcclusionQueries::new(gpu, &format!("{name}.queries"), MOST_QUERIES)?,
-            all: setup.world.read_all_commands()?,
+            objects: setup.world.len(),
             least_samples: least_samples(setup.options, gpu.has(Extra::OcclusionQueryPrecise), name)?,
             boxes: Vec::new(),
             asked: Vec::new(),
@@ -105,7 +106,7 @@ impl Asking {
         target: &'a Target,
         asked: Numbered,
     ) -> Result<Recording<'a>> {
-        assert_eq!(self.all.len(), world.len(), "this list was made for another world: make the method again");
+        assert_eq!(self.objects, world.len(), "this list was made for another world: make the method again");
         self.shape.look(view)?;
         self.drawn.clear();
         self.tested.clear();
@@ -120,7 +121,7 @@ impl Asking {
 
     /// Draws what the last frame drew, in the same order.
     pub(super) fn draw_again(&mut self, f: &mut Frame, world: &World, view: &View, target: &Target) -> Result<()> {
-        assert_eq!(self.all.len(), world.len(), "this list was made for another world: make the method again");
+        assert_eq!(self.objects, world.len(), "this list was made for another world: make the method again");
         self.tested.clear();
         self.work = Work::default();
         let mut first = 0;
@@ -197,7 +198,7 @@ impl Recording<'_> {
     /// Draws an object.
     pub(super) fn draw(&mut self, object: u32) -> Result<()> {
         self.go_on(Run::Draws(kind_of(self.world, object)))?;
-        self.on.drawn.push(self.on.all[object as usize]);
+        self.on.drawn.push(self.world.command(object));
         Ok(())
     }
 
@@ -205,7 +206,7 @@ impl Recording<'_> {
     pub(super) fn draw_and_ask(&mut self, object: u32) -> Result<()> {
         self.make_room(0)?;
         self.go_on(Run::QueriedDraws(kind_of(self.world, object)))?;
-        self.on.drawn.push(self.on.all[object as usize]);
+        self.on.drawn.push(self.world.command(object));
         self.on.pending += 1;
         self.on.work.queries += 1;
         Ok(())

@@ -24,7 +24,6 @@ pub const OPTIONS: &[OptionInfo] = &[OptionInfo {
 
 struct Reference {
     visible: Arc<VisibleSets>,
-    all: Vec<DrawCommand>,
     commands: Buffer<DrawCommand>,
     counts: Vec<Buffer<u32>>,
     near_to_far: bool,
@@ -41,7 +40,6 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
     let count = |index: usize| Buffer::new(setup.gpu, &format!("ref.total{index}"), 1, Placement::Upload);
     Ok(Box::new(Reference {
         visible,
-        all: setup.world.read_all_commands()?,
         commands: Buffer::new(setup.gpu, "ref.commands", setup.world.len(), Placement::Upload)?,
         counts: (0..setup.world.ranges().len()).map(count).collect::<std::result::Result<_, _>>()?,
         near_to_far: setup.options.text("order") == "near",
@@ -70,7 +68,7 @@ impl Method for Reference {
                 drawn.sort_by_cached_key(|object| begin_of(*object, world, view).to_bits());
             }
             for (place, object) in drawn.iter().enumerate() {
-                commands[range.first as usize + place] = self.all[*object];
+                commands[range.first as usize + place] = world.command(*object as u32);
             }
             total.write(&[drawn.len() as u32])?;
         }

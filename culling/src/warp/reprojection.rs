@@ -35,8 +35,8 @@ pub struct Reprojections {
 
 /// The way from the last frame's clip space to the new one's.
 ///
-/// What a skeleton has bent since then has no such way: a pixel of it goes nowhere (everything is 0, which no place in front of an eye is), so that
-/// it hides nothing.
+/// An object whose shape has changed since then has no such way. Its matrix is 0, which no point in front of an eye gives: its pixels
+/// go nowhere and hide nothing.
 ///
 /// All of it is f64: a point's world position never appears in floats, so motion is as exact a million metres from the origin
 /// as beside it.
@@ -49,7 +49,7 @@ pub fn reprojections(last: &LastFrame, world: &World, view: &View) -> Reprojecti
     let camera = clip_from_last(last.view(), view, &DAffine3::IDENTITY);
     let same_shapes = world.shape_revision() == last.shapes;
     let of_object = |((object, now), (_, before)): (&(u32, DAffine3), &(u32, DAffine3))| {
-        if !same_shapes && world.is_bent(*object) {
+        if !same_shapes && world.is_deformed(*object) {
             DMat4::ZERO
         } else if now == before {
             camera

@@ -8,7 +8,7 @@ use super::upload::Flat;
 use super::View;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, IndexedIndirect, Placement, Surface, Target};
-use scenes::{Scene, Wrap};
+use scenes::{Mesh, Scene, Wrap};
 use shaders::draw::{MaskedVertex, ObjectsVertex};
 use shaders::types::{Material, WRAP_BITS, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
 use shaders::{draw, BufferRef};
@@ -100,17 +100,19 @@ impl Detail {
 }
 
 fn vertices(scene: &Scene, plain: &[ObjectsVertex], mesh_order: &[usize]) -> Vec<MaskedVertex> {
+    let byte = |channel: f32| (channel * 255.0).round() as u8;
     let extras = mesh_order.iter().map(|mesh| &scene.meshes[*mesh]).flat_map(|mesh| {
-        (0..mesh.positions.len()).map(|vertex| {
+        (0..mesh.positions.len()).map(move |vertex| {
             let at = mesh.texture_coordinates.get(vertex).map_or([0.0; 2], |at| at.to_array());
-            (at, mesh.colours.get(vertex).map_or(u32::MAX, |colour| u32::from_le_bytes(*colour)))
+            (at, mesh.colours.get(vertex).copied().unwrap_or([1.0; 4]))
         })
     });
-    let dressed = |(plain, (coordinates, tint)): (&ObjectsVertex, ([f32; 2], u32))| MaskedVertex {
+    let dressed = |(plain, (coordinates, colour)): (&ObjectsVertex, ([f32; 2], [f32; 4]))| MaskedVertex {
         position: plain.position,
         normal_snorm16: plain.normal_snorm16,
         coordinates,
-        tint,
+        tint: u32::from_le_bytes(colour.map(byte)),
+        alpha: colour[3],
     };
     plain.iter().zip(extras).map(dressed).collect()
 }
@@ -119,24 +121,68 @@ fn vertices(scene: &Scene, plain: &[ObjectsVertex], mesh_order: &[usize]) -> Vec
 fn materials(scene: &Scene, texels: &Texels, scene_object: &[u32]) -> (Vec<u32>, Vec<Material>) {
     let mut materials = Vec::new();
     let mut known = HashMap::new();
+    let of_meshes: Vec<VertexAlpha> = scene.meshes.iter().map(VertexAlpha::of).collect();
     let of_object = scene_object.iter().map(|object| {
         let object = &scene.objects[*object as usize];
-        let mesh = &scene.meshes[object.mesh as usize];
+        let (mesh, of_mesh) = (&scene.meshes[object.mesh as usize], of_meshes[object.mesh as usize]);
         // Without coordinates there is nothing to look up.
         let texture = object.surface.texture.filter(|_| !mesh.texture_coordinates.is_empty());
-        *known.entry((texture, object.surface.cutoff.to_bits())).or_insert_with(|| {
+        let alpha = (f64::from(object.colour[3]) * f64::from(of_mesh.common)) as f32;
+        let look = (texture, alpha.to_bits(), of_mesh.varies, object.surface.cutoff.to_bits());
+        *known.entry(look).or_insert_with(|| {
+            let (alpha_varies, cutoff) =
+                (u32::from(of_mesh.varies), test_cutoff(object.surface.cutoff, of_mesh.varies));
+            let plain = Material { alpha, alpha_varies, cutoff, ..Material::default() };
             let placed = texture.map(|texture| (texels.places[texture as usize], &scene.textures[texture as usize]));
-            let cutoff = object.surface.cutoff;
-            materials.push(placed.map_or(Material { cutoff, ..Material::default() }, |(place, texture)| {
+            materials.push(placed.map_or(plain, |(place, texture)| {
                 let [x, y] = texture.wrap.map(wrap_mode);
                 let [width, height] = place.size;
                 let (first_texel, levels) = (place.first, place.levels);
-                Material { first_texel, width, height, levels, wrap: x | y << WRAP_BITS, cutoff }
+                Material { first_texel, width, height, levels, wrap: x | y << WRAP_BITS, ..plain }
             }));
             (materials.len() - 1) as u32
         })
     });
     (of_object.collect(), materials)
+}
+
+/// The alpha of a mesh's vertices.
+#[derive(Clone, Copy)]
+struct VertexAlpha {
+    /// The alpha of all vertices where it is the same, else 1.
+    common: f32,
+    /// Vertices differ in alpha.
+    varies: bool,
+}
+
+impl VertexAlpha {
+    fn of(mesh: &Mesh) -> Self {
+        let first = mesh.colours.first().map_or(1.0, |colour| colour[3]);
+        let varies = mesh.colours.iter().any(|colour| colour[3] != first);
+        VertexAlpha { common: if varies { 1.0 } else { first }, varies }
+    }
+}
+
+/// Returns the alpha from which on a fragment is there. The device rounds alpha, so its test must allow for the error: a surface must
+/// be there where its exact alpha is at least the cutoff.
+///
+/// Alpha is the product of a factor, of the vertices' alpha and of a texel, all at most 1. With u = 2^-24, half a step of `f32` at 1:
+/// - The file's cutoff and factor, the vertices' alpha and their product with the factor are each rounded once: 4 u.
+/// - A texel is n / 255 within 2.5 steps, 5 u (Vulkan's precision of a division). Bilinear interpolation rounds three times in each of
+///   two directions, and the second direction takes over the error of the first: 5 u + 3 u + 3 u = 11 u. Texels that are equal stay so.
+/// - Two products on the device: 2 u.
+///
+/// Together 17 u, less than 2^-19. The device interpolates vertices of different alpha, and Vulkan states no precision for that.
+/// Devices evaluate planes of alpha / w and 1 / w over the triangle: each rounds by a few u of its largest value in the triangle, which
+/// may be w_max / w_min times the value at the fragment. 2^-10, a quarter of a step of 8 bits, allows 8 u for a triangle whose farthest
+/// corner is 2,048 times as far as its nearest.
+///
+/// A cutoff below the error would cut nothing. Half of it is kept, so that alpha 0 stays a hole.
+fn test_cutoff(cutoff: f32, varies: bool) -> f32 {
+    const ROUNDING: f32 = 1.0 / (1u32 << 19) as f32;
+    const INTERPOLATION: f32 = 1.0 / (1u32 << 10) as f32;
+    let error = if varies { INTERPOLATION } else { ROUNDING };
+    (cutoff - error).max(0.5 * cutoff)
 }
 
 fn wrap_mode(wrap: Wrap) -> u32 {

@@ -12,14 +12,15 @@ mod skins;
 mod solids;
 mod still;
 mod ties;
+mod turning;
 pub mod twin;
 mod upload;
+mod variants;
 mod view;
 
 pub use blocks::{listed as listed_blocks, unlisted as unlisted_blocks};
 pub use drawn::{draw_lists, drawn_by, drawn_objects, Drawn};
 pub use several::BoxesOfMeshes;
-pub use skins::BentVertices;
 pub use solids::Solid;
 pub use still::{Still, DETAIL_OPTION, SKIP_OPTION};
 pub use ties::LastToFirst;
@@ -36,7 +37,8 @@ use scenes::{Cells, MovingBounds, Scene, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{Bounds, DrawCommand, MeshRange, Object};
 use shaders::{draw, frustum, BufferRef, ResourceId, Stage};
-use skins::Skins;
+use skins::Deformation;
+use turning::Turning;
 
 /// What of a scene's materials is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,8 +87,10 @@ pub struct World {
     object_meshes: Buffer<u32>,
     all_commands: Buffer<DrawCommand>,
     moving: Option<Moving>,
-    /// None if no skeleton bends anything.
-    skins: Option<Skins>,
+    /// None if no mesh is deformed.
+    deformation: Option<Deformation>,
+    /// None if no object can turn inside out.
+    turning: Option<Turning>,
     blocks: Blocks,
     ranges: Vec<Range>,
     /// Materials; none if each object has one colour.
@@ -107,6 +111,8 @@ struct Host {
     cells: Option<Cells>,
     /// By object: its mesh in the scene.
     scene_meshes: Vec<u32>,
+    /// The scene's mesh behind each mesh that objects are drawn from.
+    mesh_sources: Vec<Option<u32>>,
     /// Objects before the translucent ones.
     solid: usize,
     /// How each of the translucent ones is drawn.
@@ -162,7 +168,7 @@ impl World {
         let mut transforms = Vec::new();
         scene.motion.transforms_at(0.0, &mut transforms);
         let moving = Moving::new(gpu, scene, (&mut flat, &object_of_scene), of_moving, &transforms)?;
-        let skins = Skins::new(gpu, scene, &flat, &object_of_scene)?;
+        let deformation = Deformation::new(gpu, scene, &flat, &object_of_scene)?;
         Ok(World {
             vertices: Buffer::with_data(gpu, "world.vertices", &flat.vertices, Placement::Geometry)?,
             indices: Buffer::with_data(gpu, "world.indices", &flat.indices, Placement::Geometry)?,
@@ -172,7 +178,8 @@ impl World {
             object_meshes: Buffer::with_data(gpu, "world.object_meshes", &flat.object_meshes, storage)?,
             all_commands: Buffer::with_data(gpu, "world.all_commands", &flat.commands, storage)?,
             moving,
-            skins,
+            deformation,
+            turning: Turning::new(gpu, flat.windings, flat.turning)?,
             blocks: Blocks::new(gpu, &flat.bounds[..solid], &solid_moving)?,
             detail,
             ranges: flat.ranges,
@@ -182,6 +189,7 @@ impl World {
                 boxes: flat.boxes,
                 object_meshes: flat.object_meshes,
                 scene_meshes: flat.scene_meshes,
+                mesh_sources: flat.mesh_sources,
                 solid,
                 translucent_kinds: flat.translucent_kinds,
                 solid_moves: (0..transforms.len())

@@ -3,13 +3,13 @@
 //! With bounds for each frame, every moving object brings its own. Bounds that hold more than one place (an animation's, or all) are
 //! brought only where they change, so that most frames bring transforms alone.
 
-use super::skins::Skins;
+use super::skins::Deformation;
 use super::upload::{self, Flat};
 use super::World;
 use crate::Result;
 use engine::{Buffer, Frame, Gpu, Placement};
 use glam::{DAffine3, DVec3};
-use scenes::{JointPlaces, MovingBounds, MovingBoxes, Scene};
+use scenes::{MovingBounds, MovingBoxes, Scene, Shapes};
 use shaders::types::{Bounds, MovedObject, MovedTransform};
 use shaders::{world, Stage};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -44,12 +44,12 @@ impl Moving {
         let boxes = MovingBoxes::new(scene, &flat.world_bounds, mode);
         // For each frame anew: until the first time is set, objects have the bounds of where they are.
         let known =
-            transforms.iter().enumerate().filter(|_| mode != MovingBounds::PerFrame || !scene.skinned.is_empty());
-        let joints = scene.joints_at(0.0);
+            transforms.iter().enumerate().filter(|_| mode != MovingBounds::PerFrame || !scene.deformed.is_empty());
+        let shapes = scene.shapes_at(0.0);
         for (place, (scene_object, transform)) in known {
             let object = object_of_scene[*scene_object as usize] as usize;
             let mesh = flat.scene_meshes[object];
-            flat.boxes[object] = boxes.at(place, 0.0, &flat.world_bounds, (mesh, transform), &joints);
+            flat.boxes[object] = boxes.at(place, 0.0, &flat.world_bounds, (mesh, transform), &shapes);
             flat.bounds[object] = bounds_of(&boxes, place, &flat.boxes[object], transform, flat.bounds[object].flags);
         }
         let upload = Placement::Upload;
@@ -86,11 +86,14 @@ impl World {
         }
         let host = &mut self.host;
         scene.motion.transforms_at(seconds, &mut host.transforms);
-        if let Some(skins) = &mut self.skins {
-            skins.set_time(scene, seconds)?;
+        if let Some(deformation) = &mut self.deformation {
+            deformation.set_time(scene, seconds)?;
         }
-        let none = JointPlaces::default();
-        let joints = self.skins.as_ref().map_or(&none, Skins::joints);
+        let none = Shapes::default();
+        let shapes = self.deformation.as_ref().map_or(&none, Deformation::shapes);
+        if let Some(turning) = &mut self.turning {
+            turning.set_time(&host.transforms, &shapes.joints, &mut host.object_meshes)?;
+        }
         if moving.brought.swap(false, Ordering::Relaxed) {
             moving.changed.fill(false);
         }
@@ -100,7 +103,7 @@ impl World {
             let at = index as usize;
             let object = upload::object(transform, host.objects[at].colour);
             host.objects[at] = object;
-            host.boxes[at] = moving.boxes.at(place, seconds, &host.bounds, (host.scene_meshes[at], transform), joints);
+            host.boxes[at] = moving.boxes.at(place, seconds, &host.bounds, (host.scene_meshes[at], transform), shapes);
             let bounds = bounds_of(&moving.boxes, place, &host.boxes[at], transform, host.flags[at]);
             let changes = moving.boxes.mode() == MovingBounds::PerFrame || bounds != moving.bounds[place];
             any |= changes;
@@ -120,13 +123,14 @@ impl World {
         Ok(())
     }
 
-    /// First step of every frame: moving objects take their places, and those that skeletons bend their shapes.
+    /// First step of every frame: moving objects take their places, and deformed ones their shapes.
     pub fn update(&self, f: &mut Frame) {
         match &self.moving {
             Some(moving) => self.update_moving(f, moving),
             None => f.skip(world::MoveObjects::INFO.name, "no dynamic objects"),
         }
-        self.bend(f);
+        self.deform(f);
+        self.turn(f);
     }
 
     fn update_moving(&self, f: &mut Frame, moving: &Moving) {

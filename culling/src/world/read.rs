@@ -3,7 +3,7 @@
 use super::World;
 use crate::Result;
 use shaders::draw::ObjectsVertex;
-use shaders::types::{Bounds, DrawCommand, MeshRange};
+use shaders::types::{Bounds, MeshRange};
 
 impl World {
     /// Bounds as they are on the GPU now, of the objects that culling methods see.
@@ -29,12 +29,5 @@ impl World {
     /// Vertices as they are on the GPU now; for tests.
     pub fn read_vertices(&self) -> Result<Vec<ObjectsVertex>> {
         Ok(self.vertices.read()?)
-    }
-
-    /// A command for every object that culling methods see.
-    pub fn read_all_commands(&self) -> Result<Vec<DrawCommand>> {
-        let mut commands = self.all_commands.read()?;
-        commands.truncate(self.len());
-        Ok(commands)
     }
 }

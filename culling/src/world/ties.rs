@@ -23,8 +23,11 @@ impl LastToFirst {
         let meshes = &world.host.meshes;
         let mut turned = vec![false; meshes.len()];
         for range in world.ranges() {
-            let objects = range.first as usize..(range.first + range.count) as usize;
-            for mesh in world.host.object_meshes[objects].iter().map(|mesh| *mesh as usize) {
+            let objects = range.first..range.first + range.count;
+            let now = objects.clone().map(|object| world.host.object_meshes[object as usize]);
+            let others = world.turning.iter().flat_map(|turning| turning.other_meshes());
+            let others = others.filter(|(object, _)| objects.contains(object)).map(|(_, mesh)| mesh);
+            for mesh in now.chain(others).map(|mesh| mesh as usize) {
                 if !std::mem::replace(&mut turned[mesh], true) {
                     turn_round(&mut indices, meshes[mesh], range.primitives);
                 }

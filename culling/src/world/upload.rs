@@ -1,10 +1,11 @@
 //! From a scene's data to the GPU's: order, compression, outward rounding.
 
 use super::order::{order, Placed};
+use super::variants::Variants;
 use super::{split, Range, Shading, World};
 use engine::{Faces, Primitives, Surface};
 use glam::{DAffine3, DVec3, Vec3};
-use scenes::{Aabb, Mesh, Scene, Topology, WorldBounds};
+use scenes::{Aabb, Mesh, Scene, Topology, Windings, WorldBounds};
 use shaders::draw::ObjectsVertex;
 use shaders::types::{
     Bounds, DrawCommand, LocalBox, MeshRange, Object, OBJECT_ALWAYS_KEPT, OBJECT_DYNAMIC, OBJECT_WIDE_RASTER,
@@ -32,6 +33,23 @@ pub(super) struct Flat {
     pub(super) world_bounds: WorldBounds,
     /// Meshes in the order in which their vertices and indices lie.
     pub(super) mesh_order: Vec<usize>,
+    /// One-sided objects that can turn inside out.
+    pub(super) turning: Vec<Turnable>,
+    /// The winding of each object over time.
+    pub(super) windings: Windings,
+    /// The scene's mesh behind each mesh that objects are drawn from. None for a mesh without triangles.
+    pub(super) mesh_sources: Vec<Option<u32>>,
+}
+
+/// A one-sided object that can turn inside out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turnable {
+    /// Its number in the world.
+    pub(super) object: u32,
+    /// Its number in the scene.
+    pub(super) scene_object: u32,
+    /// The mesh that it is drawn from: as it is in the scene, and with its triangles the other way round, for when it is mirrored.
+    pub(super) meshes: [u32; 2],
 }
 
 /// How an object is drawn. In this order: translucent ones last.
@@ -77,58 +95,32 @@ fn is_cut_out(object: &scenes::Object, mesh: &Mesh, shading: Shading) -> bool {
     shading == Shading::Textured && object.masked && (object.surface.texture.is_some() || !mesh.colours.is_empty())
 }
 
-/// Masked, and of one alpha that is not enough: not there at all.
-fn is_absent(object: &scenes::Object, mesh: &Mesh, shading: Shading) -> bool {
-    object.masked
-        && !object.translucent
-        && !is_cut_out(object, mesh, shading)
-        && object.colour[3] < object.surface.cutoff
+/// True if the object is masked and leaves no fragment: its alpha is too low everywhere. `most_alpha` is the largest alpha of its mesh's vertices.
+fn is_absent(object: &scenes::Object, mesh: &Mesh, most_alpha: f32, shading: Shading) -> bool {
+    // Products that a file means to equal the cutoff differ by the rounding of f32.
+    const MEANT_EQUAL: f64 = 1.0 / (1u32 << 22) as f64;
+    let (alpha, cutoff) = (f64::from(object.colour[3]), f64::from(object.surface.cutoff));
+    let too_low = match is_cut_out(object, mesh, shading) {
+        // A texel has alpha 1 at most.
+        true => alpha * f64::from(most_alpha) < cutoff * (1.0 - MEANT_EQUAL),
+        false => alpha < cutoff,
+    };
+    object.masked && !object.translucent && too_low
 }
 
-/// The meshes that objects are drawn from: those of the scene, and what mirrored and absent objects need beside them.
-struct Variants {
-    meshes: Vec<MeshRange>,
-    indices: Vec<u32>,
-    turned: std::collections::HashMap<u32, u32>,
-    empty: Option<u32>,
-}
-
-impl Variants {
-    /// The mesh for an object. A mirrored transform turns triangles round on the screen, so that those of one side are wound the
-    /// other way round first.
-    fn mesh_of(&mut self, object: &scenes::Object, kind: Kind, absent: bool) -> u32 {
-        let mesh = object.mesh;
-        if absent {
-            return *self.empty.get_or_insert_with(|| add(&mut self.meshes, MeshRange::default()));
-        }
-        if kind.faces == Faces::Both || object.world_from_object.matrix3.determinant() >= 0.0 {
-            return mesh;
-        }
-        if let Some(turned) = self.turned.get(&mesh) {
-            return *turned;
-        }
-        let range = self.meshes[mesh as usize];
-        let first_index = self.indices.len() as u32;
-        for corner in (0..range.index_count as usize).step_by(3).map(|first| range.first_index as usize + first) {
-            let [a, b, c] = [0, 1, 2].map(|side| self.indices[corner + side]);
-            self.indices.extend([a, c, b]);
-        }
-        let turned = add(&mut self.meshes, MeshRange { first_index, ..range });
-        self.turned.insert(mesh, turned);
-        turned
-    }
-}
-
-fn add(meshes: &mut Vec<MeshRange>, mesh: MeshRange) -> u32 {
-    meshes.push(mesh);
-    // At most three for each of the scene's.
-    (meshes.len() - 1) as u32
+/// The largest alpha of each mesh's vertices.
+fn most_alpha(meshes: &[Mesh]) -> Vec<f32> {
+    let most = |mesh: &Mesh| mesh.colours.iter().map(|colour| colour[3]).reduce(f32::max).unwrap_or(1.0);
+    meshes.iter().map(most).collect()
 }
 
 pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
     let mesh_order = mesh_order(scene);
     let (vertices, indices, meshes) = geometry(&scene.meshes, &mesh_order);
-    let mut variants = Variants { meshes, indices, turned: Default::default(), empty: None };
+    let mut variants = Variants::of(meshes, indices);
+    let (windings, joints) = (Windings::new(scene), scene.joints_at(0.0));
+    let mut turning = Vec::new();
+    let most_alpha = most_alpha(&scene.meshes);
     let kind_of = |object: &scenes::Object| Kind::of(object, &scene.meshes[object.mesh as usize], shading);
     let world_bounds = WorldBounds::new(scene);
     let placed = |object: &scenes::Object| Placed {
@@ -147,22 +139,30 @@ pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
         let aabb = world_bounds.of(from.mesh, &from.world_from_object);
         bounds.push(self::bounds(&aabb, &from.world_from_object, flags));
         boxes.push(aabb);
-        let absent = is_absent(from, &scene.meshes[from.mesh as usize], shading);
-        let drawn_mesh = variants.mesh_of(from, kind_of(from), absent);
+        let absent = is_absent(from, &scene.meshes[from.mesh as usize], most_alpha[from.mesh as usize], shading);
+        // There are at most 2^24 objects.
+        let index = index as u32;
+        let drawn_mesh = if absent {
+            variants.empty()
+        } else if kind_of(from).faces == Faces::Both {
+            from.mesh
+        } else {
+            let mirrored = windings.is_mirrored(*scene_index, &from.world_from_object, &joints);
+            let turns = windings.turning().binary_search(scene_index).is_ok();
+            let other = if mirrored || turns { variants.turned(from.mesh) } else { from.mesh };
+            let meshes = [from.mesh, other];
+            if turns {
+                turning.push(Turnable { object: index, scene_object: *scene_index, meshes });
+            }
+            meshes[usize::from(mirrored)]
+        };
         object_meshes.push(drawn_mesh);
         scene_meshes.push(from.mesh);
-        let mesh = variants.meshes[drawn_mesh as usize];
-        commands.push(DrawCommand {
-            index_count: mesh.index_count,
-            instance_count: 1,
-            first_index: mesh.first_index,
-            vertex_offset: mesh.vertex_offset,
-            first_instance: index as u32,
-        });
+        commands.push(command(variants.meshes[drawn_mesh as usize], index));
     }
     let kinds: Vec<Kind> = scene_object.iter().map(|object| kind_of(&scene.objects[*object as usize])).collect();
     let solid = kinds.iter().filter(|kind| kind.surface != Surface::Translucent).count();
-    let Variants { meshes, indices, .. } = variants;
+    let Variants { meshes, indices, sources: mesh_sources, .. } = variants;
     Flat {
         vertices,
         indices,
@@ -179,13 +179,27 @@ pub(super) fn flatten(scene: &Scene, shading: Shading) -> Flat {
         scene_object,
         world_bounds,
         mesh_order,
+        turning,
+        windings,
+        mesh_sources,
     }
 }
 
-/// The order in which the vertices of meshes lie: those that skeletons bend behind all others.
+/// The command that draws an object from a mesh.
+pub(super) fn command(mesh: MeshRange, object: u32) -> DrawCommand {
+    DrawCommand {
+        index_count: mesh.index_count,
+        instance_count: 1,
+        first_index: mesh.first_index,
+        vertex_offset: mesh.vertex_offset,
+        first_instance: object,
+    }
+}
+
+/// The order in which the vertices of meshes lie: deformed meshes come behind all others.
 fn mesh_order(scene: &Scene) -> Vec<usize> {
     let mut bent = vec![false; scene.meshes.len()];
-    scene.skinned.iter().for_each(|skinned| bent[scene.objects[skinned.object as usize].mesh as usize] = true);
+    scene.deformed.iter().for_each(|deformed| bent[deformed.mesh as usize] = true);
     let mut order: Vec<usize> = (0..bent.len()).collect();
     order.sort_by_key(|mesh| bent[*mesh]);
     order
@@ -267,11 +281,10 @@ pub fn bounds(box_: &Aabb, world_from_object: &DAffine3, flags: u32) -> Bounds {
 impl World {
     /// The box of each mesh in object space, by the numbers of [`World::object_meshes`].
     pub fn local_boxes(&self) -> Vec<LocalBox> {
-        let mut boxes = vec![LocalBox::default(); self.host.meshes.len()];
-        for (drawn, mesh) in self.host.object_meshes.iter().zip(&self.host.scene_meshes) {
-            boxes[*drawn as usize] = local_box(&self.host.bounds.in_object_space(*mesh));
-        }
-        boxes
+        let of = |source: &Option<u32>| {
+            source.map_or_else(LocalBox::default, |mesh| local_box(&self.host.bounds.in_object_space(mesh)))
+        };
+        self.host.mesh_sources.iter().map(of).collect()
     }
 }
 

@@ -22,6 +22,7 @@ pub(super) fn vertex_layout(
         location: attribute.location,
         binding,
         format: match attribute.format {
+            VertexFormat::Float => vk::Format::R32_SFLOAT,
             VertexFormat::Float2 => vk::Format::R32G32_SFLOAT,
             VertexFormat::Float3 => vk::Format::R32G32B32_SFLOAT,
             VertexFormat::Float4 => vk::Format::R32G32B32A32_SFLOAT,

@@ -13,6 +13,7 @@ fuzz_target!(|file: &[u8]| {
     let mut places = Vec::new();
     for seconds in [0.0, 0.5, 1.0e9] {
         scene.motion.transforms_at(seconds, &mut places);
+        scene.meshes_at(seconds);
     }
     let _ = scenes::export_glb(&scene, None, 1);
 });

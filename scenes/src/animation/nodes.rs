@@ -50,6 +50,17 @@ impl AnimatedNode {
         }
     }
 
+    /// The same without the node's own scale, which cameras ignore. A matrix keeps all that it is.
+    pub(crate) fn parent_from_camera(&self, seconds: f64) -> DAffine3 {
+        match self.local {
+            Local::Matrix(matrix) => matrix,
+            Local::Parts { translation, rotation, .. } => DAffine3::from_rotation_translation(
+                self.rotation.as_ref().map_or(rotation, |track| track.at(seconds)),
+                self.translation.as_ref().map_or(translation, |track| track.at(seconds)),
+            ),
+        }
+    }
+
     /// Times of its first and last key, if it has any.
     fn duration_s(&self) -> Option<(f64, f64)> {
         let tracks = [
@@ -66,7 +77,7 @@ fn union(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
 }
 
 /// An object that hangs on a node.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Attachment {
     /// Index of the object in its scene.
     pub object: u32,
@@ -74,13 +85,49 @@ pub struct Attachment {
     pub node: usize,
     /// Node from object: identity, or the place of one instance of many on a node.
     pub node_from_object: DAffine3,
+    /// World from the space in which the tree moves: identity, or the place of one instance of a mesh that a skeleton bends.
+    pub world_from_tree: DAffine3,
 }
 
-/// A tree of animated nodes and the objects on them. Morph weights are not animated.
-#[derive(Clone, Debug, Default)]
+impl Attachment {
+    /// Makes an object that is exactly where its node is.
+    pub fn new(object: u32, node: usize) -> Self {
+        Attachment { object, node, node_from_object: DAffine3::IDENTITY, world_from_tree: DAffine3::IDENTITY }
+    }
+}
+
+/// Scenes are hashed by this text, so it names `world_from_tree` only where that is not the identity.
+impl std::fmt::Debug for Attachment {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut text = f.debug_struct("Attachment");
+        text.field("object", &self.object).field("node", &self.node).field("node_from_object", &self.node_from_object);
+        if self.world_from_tree != DAffine3::IDENTITY {
+            text.field("world_from_tree", &self.world_from_tree);
+        }
+        text.finish()
+    }
+}
+
+/// A tree of animated nodes, the objects on them, and the animated weights of morph targets.
+#[derive(Clone, Default)]
 pub struct NodeAnimation {
     nodes: Vec<AnimatedNode>,
     objects: Vec<Attachment>,
+    weights: Vec<Track<f64>>,
+    /// The smallest and the largest value of each of `weights`.
+    weight_ranges: Vec<[f64; 2]>,
+}
+
+/// Scenes are hashed by this text, so it names weights only where there are some.
+impl std::fmt::Debug for NodeAnimation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut text = f.debug_struct("NodeAnimation");
+        text.field("nodes", &self.nodes).field("objects", &self.objects);
+        if !self.weights.is_empty() {
+            text.field("weights", &self.weights);
+        }
+        text.finish()
+    }
 }
 
 impl NodeAnimation {
@@ -101,7 +148,24 @@ impl NodeAnimation {
         if let Some(stray) = objects.iter().find(|attachment| attachment.node >= nodes.len()) {
             return Err(format!("object {} hangs on node {} of {}", stray.object, stray.node, nodes.len()));
         }
-        Ok(NodeAnimation { nodes, objects })
+        Ok(NodeAnimation { nodes, objects, weights: Vec::new(), weight_ranges: Vec::new() })
+    }
+
+    /// Adds animated weights. [`MorphTarget::weight`](crate::MorphTarget::weight) is an index into them.
+    pub fn with_weights(self, weights: Vec<Track<f64>>) -> Self {
+        // Once a track, not once for each target that it moves: a file may have many keys and many primitives.
+        let weight_ranges = weights.iter().map(Track::range).collect();
+        NodeAnimation { weights, weight_ranges, ..self }
+    }
+
+    /// The smallest and the largest value that each of [`NodeAnimation::weights`] ever has.
+    pub(crate) fn weight_ranges(&self) -> &[[f64; 2]] {
+        &self.weight_ranges
+    }
+
+    /// The animated weights of morph targets.
+    pub fn weights(&self) -> &[Track<f64>] {
+        &self.weights
     }
 
     /// The nodes, parents before children.
@@ -116,7 +180,8 @@ impl NodeAnimation {
 
     /// Times of the first and the last key in seconds; (0, 0) without keys.
     pub fn duration_s(&self) -> (f64, f64) {
-        self.nodes.iter().filter_map(AnimatedNode::duration_s).reduce(union).unwrap_or((0.0, 0.0))
+        let nodes = self.nodes.iter().filter_map(AnimatedNode::duration_s);
+        nodes.chain(self.weights.iter().map(Track::duration_s)).reduce(union).unwrap_or((0.0, 0.0))
     }
 
     /// Appends world from object for each object at a time, by ascending object index.
@@ -127,11 +192,15 @@ impl NodeAnimation {
             let world_from_parent = node.parent.map_or(node.world_from_root, |parent| world[parent]);
             world.push(world_from_parent * node.parent_from_node(seconds));
         }
-        out.extend(
-            self.objects
-                .iter()
-                .map(|attachment| (attachment.object, world[attachment.node] * attachment.node_from_object)),
-        );
+        let place = |on: &Attachment| {
+            let tree_from_object = world[on.node] * on.node_from_object;
+            // A product with the identity would turn -0 into 0, and other bytes mean another hash.
+            match on.world_from_tree == DAffine3::IDENTITY {
+                true => tree_from_object,
+                false => on.world_from_tree * tree_from_object,
+            }
+        };
+        out.extend(self.objects.iter().map(|attachment| (attachment.object, place(attachment))));
     }
 
     /// World from node at a time, or none if there is no such node. Costs the node's depth, not the size of the tree.
@@ -146,9 +215,14 @@ impl NodeAnimation {
         Some(chain.iter().rev().fold(current.world_from_root, |world, node| world * node.parent_from_node(seconds)))
     }
 
-    /// Where a camera on the node is and looks at a time, or none if there is no such node.
+    /// Where a camera on the node is and looks at a time, or none if there is no such node. The node's own scale is ignored (glTF 2.0, 3.10.2).
     pub fn pose_at(&self, node: usize, seconds: f64) -> Option<Pose> {
-        self.world_from_node(node, seconds).map(pose_of)
+        let own = self.nodes.get(node)?;
+        let world_from_parent = match own.parent {
+            Some(parent) => self.world_from_node(parent, seconds)?,
+            None => own.world_from_root,
+        };
+        Some(pose_of(world_from_parent * own.parent_from_camera(seconds)))
     }
 }
 

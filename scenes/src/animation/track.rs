@@ -1,6 +1,7 @@
 //! One animated property: key times, values, and how to go from one to the next (glTF 2.0, appendix C).
 
 use glam::{DQuat, DVec3, DVec4};
+use std::sync::Arc;
 
 /// How a property goes from key to key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,6 +38,19 @@ impl Interpolate for DVec3 {
     }
 }
 
+/// Weights of morph targets.
+impl Interpolate for f64 {
+    fn linear(a: Self, b: Self, t: f64) -> Self {
+        a * (1.0 - t) + b * t
+    }
+    fn weighted(terms: [Self; 4], weights: [f64; 4]) -> Self {
+        terms.iter().zip(weights).map(|(&term, weight)| term * weight).sum()
+    }
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+}
+
 impl Interpolate for DQuat {
     fn linear(a: Self, b: Self, t: f64) -> Self {
         a.slerp(b, t)
@@ -50,12 +64,12 @@ impl Interpolate for DQuat {
     }
 }
 
-/// An animated property.
+/// An animated property. A clone shares its keys.
 #[derive(Clone, Debug)]
 pub struct Track<T> {
     interpolation: Interpolation,
-    times: Vec<f64>,
-    values: Vec<T>,
+    times: Arc<[f64]>,
+    values: Arc<[T]>,
 }
 
 /// What gives a track's values between two times: see [`Track::between`].
@@ -74,6 +88,11 @@ impl<T: Interpolate> Track<T> {
     /// # Errors
     /// What is wrong, as half a sentence: no keys, wrong counts, times that descend, or a number that is not finite.
     pub fn new(interpolation: Interpolation, times: Vec<f64>, values: Vec<T>) -> Result<Self, String> {
+        Self::with_times(interpolation, times.into(), values)
+    }
+
+    /// Makes a track like [`Track::new`], with times that other tracks share.
+    pub(crate) fn with_times(interpolation: Interpolation, times: Arc<[f64]>, values: Vec<T>) -> Result<Self, String> {
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if times.is_empty() {
             return Err("it has no keys".into());
@@ -87,12 +106,29 @@ impl<T: Interpolate> Track<T> {
         if let Some(key) = (1..times.len()).find(|&key| times[key] < times[key - 1]) {
             return Err(format!("the time of key {key} is before that of key {}", key - 1));
         }
-        Ok(Track { interpolation, times, values })
+        Ok(Track { interpolation, times, values: values.into() })
+    }
+
+    /// True if the track has one value at all times.
+    pub(crate) fn is_constant(&self) -> bool
+    where
+        T: PartialEq,
+    {
+        let first = self.value(0);
+        let keys = (0..self.times.len()).all(|key| self.value(key) == first);
+        // The tangents of splines lead away from their values.
+        keys && (self.interpolation != Interpolation::CubicSpline || self.times.len() == 1)
     }
 
     /// Time of the first and the last key in seconds.
     pub fn duration_s(&self) -> (f64, f64) {
         (self.times[0], self.times[self.times.len() - 1])
+    }
+
+    /// Returns the values between which a LINEAR or STEP track stays, component by component. None for splines, which can leave the
+    /// range of their keys.
+    pub(crate) fn values_that_bound(&self) -> Option<&[T]> {
+        (self.interpolation != Interpolation::CubicSpline).then_some(&self.values)
     }
 
     /// Times of all keys in seconds, ascending.

@@ -20,7 +20,13 @@ use std::cell::Cell;
 
 /// Most elements of an accessor that has no bytes of its own, so that 30 bytes of JSON cannot ask for gigabytes.
 const MOST_ZEROS: u64 = 1 << 22;
-/// Most elements read in all: bounds the memory of files that read the same bytes over and over.
+/// Elements that any file may read in all, however small it is. A deformed mesh is read once for each of its nodes, so legal files read the
+/// same bytes many times.
+const LEAST_ELEMENTS: u64 = 1 << 26;
+/// Elements that a file may read for each byte of its own. A compressed file decodes to 50 bytes for each of its bytes at most, and an
+/// element has 1 to 64 bytes.
+const ELEMENTS_A_BYTE: u64 = 64;
+/// Most elements of any file. Bounds the time and the memory of an import.
 const MOST_ELEMENTS: u64 = 1 << 31;
 
 /// A vector of any size, where the crate has single numbers and arrays of 2, 3 and 4.
@@ -50,12 +56,15 @@ pub(super) enum Allowed {
 pub(super) struct Accessors<'a> {
     document: &'a Document<'a>,
     buffers: &'a [Bytes<'a>],
+    most_elements: u64,
     elements_left: Cell<u64>,
 }
 
 impl<'a> Accessors<'a> {
-    pub(super) fn new(document: &'a Document, buffers: &'a [Bytes<'a>]) -> Self {
-        Accessors { document, buffers, elements_left: Cell::new(MOST_ELEMENTS) }
+    /// Takes the buffers after decompression. `size` is the number of bytes of the file and its data files, as they are stored.
+    pub(super) fn new(document: &'a Document, buffers: &'a [Bytes<'a>], size: u64) -> Self {
+        let most_elements = size.saturating_mul(ELEMENTS_A_BYTE).saturating_add(LEAST_ELEMENTS).min(MOST_ELEMENTS);
+        Accessors { document, buffers, most_elements, elements_left: Cell::new(most_elements) }
     }
 
     fn get(&self, index: Index<Accessor>) -> Outcome<&'a Accessor> {
@@ -171,6 +180,18 @@ impl<'a> Accessors<'a> {
         }
     }
 
+    /// Counts elements that are read, or work of the same order.
+    pub(super) fn spend(&self, count: u64) -> Outcome<()> {
+        let left = self.elements_left.get().checked_sub(count).ok_or_else(|| {
+            Fault::TooLarge(format!(
+                "the file reads more than {} elements, too many for its size; export fewer copies, keys or morph targets",
+                self.most_elements
+            ))
+        })?;
+        self.elements_left.set(left);
+        Ok(())
+    }
+
     fn elements<T: Item, U: Clone>(
         &self,
         index: Index<Accessor>,
@@ -186,15 +207,19 @@ impl<'a> Accessors<'a> {
             ));
         }
         let count = accessor.count.0;
-        let left = self.elements_left.get().checked_sub(count);
-        self.elements_left
-            .set(left.ok_or_else(|| Fault::TooLarge(format!("more than {MOST_ELEMENTS} elements in all")))?);
         let mut elements: Vec<U> = match accessor.buffer_view {
-            Some(view) => self.items(view, accessor.byte_offset, count, true)?.map(&convert).collect(),
+            Some(view) => {
+                let items = self.items(view, accessor.byte_offset, count, true)?;
+                self.spend(count)?;
+                items.map(&convert).collect()
+            }
             None if count > MOST_ZEROS => {
                 return Err(Fault::TooLarge(format!("{count} elements without data; the limit is {MOST_ZEROS}")));
             }
-            None => vec![convert(T::zero()); count as usize],
+            None => {
+                self.spend(count)?;
+                vec![convert(T::zero()); count as usize]
+            }
         };
         let Some(sparse) = &accessor.sparse else { return Ok(elements) };
         let (at, count) = (&sparse.indices, sparse.count.0);

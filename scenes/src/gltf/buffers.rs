@@ -4,13 +4,11 @@
 //! and pipes too, and panics at names that are not UTF-8.
 
 use super::fault::{broken, Fault, Outcome};
-use base64::alphabet::{STANDARD, URL_SAFE};
-use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use base64::{DecodeError, Engine};
+use super::uri::{self, Place};
 use gltf::json::{Buffer, Root};
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// The contents of one buffer, exactly as long as the file says; none where only an extension knows them.
@@ -20,16 +18,32 @@ pub(super) type Bytes<'a> = Option<Cow<'a, [u8]>>;
 pub(super) fn load<'a>(root: &Root, binary: Option<&'a [u8]>, folder: &Path) -> Outcome<Vec<Bytes<'a>>> {
     let load = |index: usize, buffer: &Buffer| {
         let length = buffer.byte_length.0;
-        let bytes = match &buffer.uri {
-            Some(uri) => Some(Cow::Owned(fetch(uri, length, folder)?)),
-            None => binary.filter(|_| index == 0).map(Cow::Borrowed),
-        };
-        exactly(bytes, length)
+        match &buffer.uri {
+            // The buffer is for readers that cannot decompress. Its file may be missing.
+            Some(uri) if is_fallback(buffer) => Ok(fetch(uri, length, folder).ok().map(Cow::Owned)),
+            None if is_fallback(buffer) => Ok(None),
+            Some(uri) => exactly(Some(Cow::Owned(fetch(uri, length, folder)?)), length),
+            None => exactly(binary.filter(|_| index == 0).map(Cow::Borrowed), length),
+        }
     };
     let buffers = root.buffers.iter().enumerate();
     buffers
         .map(|(index, buffer)| load(index, buffer).map_err(|fault| fault.within(|| format!("buffer {index}"))))
         .collect()
+}
+
+/// Counts the bytes of all buffers.
+pub(super) fn stored(buffers: &[Bytes<'_>]) -> u64 {
+    buffers.iter().flatten().map(|bytes| bytes.len() as u64).sum()
+}
+
+/// True if the buffer is only a placeholder for compressed data (EXT_meshopt_compression).
+fn is_fallback(buffer: &Buffer) -> bool {
+    let extensions = buffer.extensions.as_ref().map(|extensions| &extensions.others);
+    ["EXT_meshopt_compression", "KHR_meshopt_compression"]
+        .iter()
+        .filter_map(|name| extensions?.get(*name)?.get("fallback"))
+        .any(|fallback| fallback == true)
 }
 
 /// Cuts off the padding that a data chunk or file may have.
@@ -52,34 +66,24 @@ fn exactly(bytes: Bytes<'_>, length: u64) -> Outcome<Bytes<'_>> {
 
 /// The bytes that a URI stands for, at most `length` of a file.
 pub(super) fn fetch(uri: &str, length: u64, folder: &Path) -> Outcome<Vec<u8>> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return decode_data(data);
+    let paths = match uri::place(uri)? {
+        Place::Data(bytes) => return Ok(bytes),
+        Place::File(paths) => paths,
+    };
+    let mut errors = Vec::new();
+    for path in &paths {
+        match read_file(&folder.join(path), length) {
+            Ok(bytes) => return Ok(bytes),
+            Err(error) => errors.push((path, error)),
+        }
     }
-    let name = percent_decoded(uri)?;
-    let scheme = name.split_once(':').map(|(scheme, _)| scheme);
-    if scheme.is_some_and(|scheme| {
-        scheme.len() > 1 && scheme.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"+-.".contains(&byte))
-    }) {
-        let remedy = "download the file, put it beside the scene and refer to it by its name".into();
-        return Err(Fault::Unsupported { what: format!("data at '{name}'"), remedy });
-    }
-    if Path::new(&name).is_absolute() {
-        return broken(format!("its data '{name}' is not given relative to the scene; refer to it by its name alone"));
-    }
-    read_file(&folder.join(&name), length).map_err(|error| {
-        Fault::Broken(format!(
-            "its data file '{name}' cannot be read ({error}); put it in the folder '{}'",
-            shown(folder)
-        ))
-    })
-}
-
-fn shown(folder: &Path) -> String {
-    if folder.as_os_str().is_empty() {
-        ".".into()
-    } else {
-        folder.display().to_string()
-    }
+    // An existing file that cannot be read explains more than missing files. There is at least one path, so there is an error.
+    let told = errors.iter().find(|(_, error)| error.kind() != ErrorKind::NotFound).or(errors.first());
+    let (path, error) = told.map_or_else(Default::default, |(path, error)| (uri::shown(path), error.to_string()));
+    Err(Fault::Broken(format!(
+        "its data file '{path}' cannot be read ({error}); put it in the folder '{}'",
+        if folder.as_os_str().is_empty() { ".".into() } else { uri::shown(folder) }
+    )))
 }
 
 /// At most `length` bytes of a plain file: a device or pipe of that name could be endless.
@@ -90,50 +94,4 @@ fn read_file(path: &Path, length: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
-}
-
-/// A data URI without its "data:".
-fn decode_data(data: &str) -> Outcome<Vec<u8>> {
-    match data.split_once(',') {
-        Some((kind, text)) if kind.ends_with(";base64") => decode_base64(text.as_bytes()),
-        Some((_, text)) => Ok(percent_decoded_bytes(text)),
-        None => broken("its data URI has no comma before the data"),
-    }
-}
-
-/// Of either alphabet, padded or not.
-fn decode_base64(text: &[u8]) -> Outcome<Vec<u8>> {
-    let lenient = GeneralPurposeConfig::new()
-        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
-        .with_decode_allow_trailing_bits(true);
-    let alphabet = if text.iter().any(|letter| b"-_".contains(letter)) { URL_SAFE } else { STANDARD };
-    GeneralPurpose::new(&alphabet, lenient).decode(text).or_else(|error| match error {
-        DecodeError::InvalidByte(at, _) => broken(format!("its base64 data has an illegal character at {at}")),
-        other => broken(format!("its base64 data is illegal: {other}")),
-    })
-}
-
-fn percent_decoded(text: &str) -> Outcome<String> {
-    let bytes = percent_decoded_bytes(text);
-    String::from_utf8(bytes).or_else(|_| broken(format!("its URI '{text}' is not UTF-8")))
-}
-
-fn percent_decoded_bytes(text: &str) -> Vec<u8> {
-    let digit = |byte: Option<&u8>| byte.and_then(|&byte| char::from(byte).to_digit(16));
-    let text = text.as_bytes();
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut at = 0;
-    while at < text.len() {
-        match (text[at], digit(text.get(at + 1)), digit(text.get(at + 2))) {
-            (b'%', Some(high), Some(low)) => {
-                bytes.push((high * 16 + low) as u8);
-                at += 3;
-            }
-            (byte, ..) => {
-                bytes.push(byte);
-                at += 1;
-            }
-        }
-    }
-    bytes
 }

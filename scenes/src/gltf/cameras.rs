@@ -23,7 +23,20 @@ pub(super) fn read(
     let lens = &document.lenses[index.value()];
     let projection = projection(camera.type_, lens, said_type).map_err(|fault| fault.within(place))?;
     let name = camera.name.as_deref().or(node_name).map_or_else(|| format!("camera {index}"), str::to_owned);
-    Ok(SceneCamera { name, pose: pose_of(world_from_node), projection, node: None })
+    let aspect = aspect(lens).filter(|aspect| ASPECTS.contains(aspect));
+    Ok(SceneCamera { name, pose: pose_of(world_from_node), projection, aspect, node: None })
+}
+
+/// Aspects of rectangles that a picture can be made for. A view that is widened for others leaves the range of `f32`; they are ignored.
+const ASPECTS: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
+
+/// Width over height of the rectangle that a camera was made for, as the file says.
+fn aspect(lens: &Lens) -> Option<f64> {
+    match (&lens.perspective, &lens.orthographic) {
+        (Some(perspective), None) => perspective.aspect_ratio,
+        (None, Some(orthographic)) => Some((orthographic.xmag? / orthographic.ymag).abs()),
+        _ => None,
+    }
 }
 
 /// JSON has no numbers that are not finite, so plain comparisons decide.

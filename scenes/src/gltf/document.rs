@@ -5,7 +5,8 @@
 //! such as attributes of unknown names and positions without bounds, lets vertex indices and node cycles pass, and panics at a
 //! POSITION that refers to no accessor. Every reference is checked where it is followed instead.
 
-use super::fault::{broken, Fault, Outcome};
+use super::extensions;
+use super::fault::{broken, one_line, Fault, Outcome};
 use gltf::json::Root;
 use serde::Deserialize;
 use serde_json::{json, Value};
@@ -46,7 +47,9 @@ pub(super) struct Lens {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub(super) struct Perspective {
+    pub aspect_ratio: Option<f64>,
     pub yfov: f64,
     pub znear: f64,
     pub zfar: Option<f64>,
@@ -54,6 +57,7 @@ pub(super) struct Perspective {
 
 #[derive(Deserialize)]
 pub(super) struct Orthographic {
+    pub xmag: Option<f64>,
     pub ymag: f64,
     pub znear: f64,
     pub zfar: f64,
@@ -64,6 +68,8 @@ pub(super) struct Orthographic {
 #[serde(rename_all = "camelCase")]
 struct Head {
     asset: Option<Asset>,
+    #[serde(default)]
+    extensions_used: Vec<String>,
     #[serde(default)]
     extensions_required: Vec<String>,
 }
@@ -81,10 +87,8 @@ pub(super) fn parse(json: &[u8]) -> Outcome<Document<'_>> {
     let Some(asset) = head.asset else {
         return broken("it has no 'asset', so it is not glTF 2.0");
     };
-    check_version(asset.min_version.as_deref().or(asset.version.as_deref()))?;
-    for extension in &head.extensions_required {
-        check_extension(extension)?;
-    }
+    check_version(&asset)?;
+    extensions::check(&head.extensions_used, &head.extensions_required)?;
     check_whole_numbers(json)?;
     let read = match Root::from_slice(json) {
         Ok(root) => (root, from_json(json)?),
@@ -152,7 +156,11 @@ fn beyond_32_bits<'a>(key: &'a str, value: &'a Value) -> Option<(&'a str, u64)> 
             number.as_u64().filter(|&it| it > u32::MAX.into()).map(|it| (key, it))
         }
         Value::Array(list) => list.iter().find_map(|value| beyond_32_bits(key, value)),
-        Value::Object(object) => object.iter().find_map(|(key, value)| beyond_32_bits(key, value)),
+        // Extras are the application's own, and extensions are not read by the crate's model.
+        Value::Object(object) => {
+            let mut read = object.iter().filter(|(key, _)| !matches!(key.as_str(), "extras" | "extensions"));
+            read.find_map(|(key, value)| beyond_32_bits(key, value))
+        }
         _ => None,
     }
 }
@@ -168,9 +176,11 @@ fn mended(json: &[u8]) -> Result<(Root, Doubles), serde_json::Error> {
         let targets = each(animation, "channels").filter_map(|channel| channel.get_mut("target"));
         targets.for_each(|target| complete(target, "node", NO_NODE.into()));
     }
+    // Before the crate's model gets an xmag that the file does not have.
+    let doubles = serde_json::from_value(document.clone())?;
     let lenses = each(&mut document, "cameras").filter_map(|camera| camera.get_mut("orthographic"));
     lenses.for_each(|lens| complete(lens, "xmag", json!(1)));
-    Ok((serde_json::from_value(document.clone())?, serde_json::from_value(document)?))
+    Ok((serde_json::from_value(document)?, doubles))
 }
 
 /// The elements of a list, if there is one.
@@ -219,18 +229,32 @@ fn refusal(error: &serde_json::Error) -> Fault {
     Fault::Broken(format!("the JSON is not a glTF 2.0 document: {text}"))
 }
 
-fn check_version(version: Option<&str>) -> Outcome<()> {
-    let Some(version) = version else {
+/// Checks the version. Readers of 2.0 read every 2.x and ignore its new features, unless `minVersion` is higher (glTF 2.0, section
+/// 3.2).
+fn check_version(asset: &Asset) -> Outcome<()> {
+    let Some(version) = asset.version.as_deref() else {
         return broken("its 'asset' has no 'version'");
     };
-    match version.split('.').next() {
-        Some("2") if version == "2" || version == "2.0" => Ok(()),
-        Some("0" | "1") => Err(gltf_1(version)),
-        _ => Err(Fault::Unsupported {
-            what: format!("glTF version '{version}'"),
-            remedy: "export the scene as glTF 2.0".into(),
-        }),
+    let unsupported = |what: String| Fault::Unsupported { what, remedy: "export the scene as glTF 2.0".into() };
+    match parts(version) {
+        Some((2, _)) => {}
+        Some((0 | 1, _)) => return Err(gltf_1(&one_line(version, 20))),
+        _ => return Err(unsupported(format!("glTF version '{}'", one_line(version, 20)))),
     }
+    match asset.min_version.as_deref() {
+        Some(least) if parts(least).is_none_or(|least| least > (2, 0)) => {
+            Err(unsupported(format!("its 'minVersion', glTF '{}',", one_line(least, 20))))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Splits a version into major and minor. A missing minor version is 0, and one that is too large for its type is the largest.
+fn parts(version: &str) -> Option<(u32, u32)> {
+    let (major, minor) = version.split_once('.').unwrap_or((version, "0"));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let number = |text: &str| is_number(text).then(|| text.parse().unwrap_or(u32::MAX));
+    Some((number(major)?, number(minor.split('.').next().unwrap_or(minor))?))
 }
 
 /// The fault of all files of glTF 1.
@@ -239,29 +263,4 @@ pub(super) fn gltf_1(version: &str) -> Fault {
         what: format!("glTF version {version}"),
         remedy: "convert it to glTF 2.0, for instance by importing and exporting it in Blender".into(),
     }
-}
-
-/// Sightline must do, or be right to ignore, every extension that a file requires.
-fn check_extension(extension: &str) -> Outcome<()> {
-    let remedy = match extension {
-        "KHR_mesh_quantization" | "EXT_mesh_gpu_instancing" => return Ok(()),
-        // Change only how surfaces look, or where their textures come from, which are not drawn.
-        "KHR_texture_transform"
-        | "KHR_texture_basisu"
-        | "EXT_texture_webp"
-        | "EXT_texture_avif"
-        | "MSFT_texture_dds"
-        | "KHR_lights_punctual"
-        | "KHR_xmp_json_ld" => return Ok(()),
-        _ if extension.starts_with("KHR_materials_") => return Ok(()),
-        "KHR_draco_mesh_compression" => {
-            "decompress it: npx @gltf-transform/cli copy IN.glb OUT.glb, or export without Draco"
-        }
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "export the scene without mesh compression, or run gltfpack without -c"
-        }
-        "KHR_technique_webgl" => "it describes shaders of WebGL 1: export the scene again with PBR materials",
-        _ => "export the scene without it",
-    };
-    Err(Fault::Unsupported { what: format!("the required extension {extension}"), remedy: remedy.into() })
 }

@@ -2,32 +2,30 @@
 
 use super::accessor::{Accessors, Allowed};
 use super::fault::{broken, Fault, Outcome};
+use super::morphs::{self, same_count, Weights};
 use super::normals;
 use crate::model::{Mesh, Topology};
 use glam::Vec3;
-use gltf::json::accessor::Accessor;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked::Valid;
-use gltf::json::Index;
 
 /// Most indices of all meshes together, after strips and fans are rewritten: within reach of 32-bit offsets with room to spare.
 const MOST_INDICES: usize = 1 << 31;
 
-/// Reads a primitive, with morph targets at fixed weights. None if it has no positions, which is legal and means nothing to draw.
-/// `indices_so_far` counts the indices of the meshes before it, `said_mode` tells what the file has for a mode.
+/// Reads a primitive, and the morph targets whose weight is animated; other targets become part of the mesh. None if the primitive has
+/// no positions, which is legal and means nothing to draw. `indices_so_far` counts the indices of the meshes before it; `said_mode`
+/// returns the mode as the file has it.
 pub(super) fn read(
     accessors: &Accessors,
     primitive: &Primitive,
-    weights: &[f32],
+    weights: &Weights,
     name: String,
     indices_so_far: &mut usize,
     said_mode: impl FnOnce() -> String,
-) -> Outcome<Option<Mesh>> {
+) -> Outcome<Option<(Mesh, Vec<morphs::Moving>)>> {
     let Some(&positions_at) = primitive.attributes.get(&Valid(Semantic::Positions)) else { return Ok(None) };
-    if accessors.is_all_zeros(positions_at)? {
-        return broken(
-            "its POSITION has no data; is the file compressed with an extension that it does not list as required?",
-        );
+    if accessors.is_all_zeros(positions_at)? && !morphs::displace_positions(primitive) {
+        tracing::warn!("mesh '{name}': its POSITION has no data, so that all of its vertices are at the origin");
     }
     let positions =
         accessors.vectors::<3>(positions_at, Allowed::Quantized).map_err(|fault| fault.within(|| "POSITION".into()))?;
@@ -37,15 +35,11 @@ pub(super) fn read(
             .map_err(|fault| fault.within(|| "NORMAL".into()))?;
     }
     mesh.declared_bounds = accessors.declared_box(positions_at)?.filter(|declared| *declared != mesh.bounds());
-    for (index, (target, &weight)) in primitive.targets.iter().flatten().zip(weights).enumerate() {
-        if weight != 0.0 {
-            let place = || format!("morph target {index}");
-            // They are of the mesh before it is morphed.
-            mesh.declared_bounds = None;
-            morph(accessors, target.positions, weight, &mut mesh.positions).map_err(|fault| fault.within(place))?;
-            morph(accessors, target.normals, weight, &mut mesh.normals).map_err(|fault| fault.within(place))?;
-        }
+    if weights.fixed.iter().any(|weight| *weight != 0.0) {
+        // The declared box is that of the mesh before morphing.
+        mesh.declared_bounds = None;
     }
+    morphs::apply(accessors, primitive, weights, &mut mesh)?;
     if let Some(vertex) = mesh.positions.iter().position(|position| !position.is_finite()) {
         return broken(format!("the position of vertex {vertex} is not finite: {}", mesh.positions[vertex]));
     }
@@ -58,30 +52,14 @@ pub(super) fn read(
     if *indices_so_far > MOST_INDICES {
         return Err(Fault::TooLarge(format!("its meshes have more than {MOST_INDICES} indices")));
     }
+    let normals = if weights.moves.is_empty() { Vec::new() } else { mesh.normals.clone() };
     normals::complete(&mut mesh);
-    Ok(Some(mesh))
+    let moving = morphs::moving(accessors, primitive, weights, (&mesh, &normals))?;
+    Ok(Some((mesh, moving)))
 }
 
 fn to_vec3(vectors: Vec<[f32; 3]>) -> Vec<Vec3> {
     vectors.into_iter().map(Vec3::from_array).collect()
-}
-
-/// Reads one vector a vertex. The count is compared first, so that a wrong one costs no memory.
-fn same_count(accessors: &Accessors, index: Index<Accessor>, vertices: usize) -> Outcome<Vec<Vec3>> {
-    let count = accessors.count(index)?;
-    if count != vertices as u64 {
-        return broken(format!("accessor {index} has {count} elements, but there are {vertices} positions"));
-    }
-    Ok(to_vec3(accessors.vectors::<3>(index, Allowed::Quantized)?))
-}
-
-fn morph(accessors: &Accessors, deltas: Option<Index<Accessor>>, weight: f32, base: &mut [Vec3]) -> Outcome<()> {
-    let Some(deltas) = deltas.filter(|_| !base.is_empty()) else { return Ok(()) };
-    let deltas = same_count(accessors, deltas, base.len())?;
-    for (base, delta) in base.iter_mut().zip(deltas) {
-        *base += delta * weight;
-    }
-    Ok(())
 }
 
 fn read_indices(accessors: &Accessors, primitive: &Primitive, vertices: usize) -> Outcome<Vec<u32>> {
@@ -101,10 +79,10 @@ fn rewritten(mode: Mode, list: Vec<u32>) -> Outcome<(Topology, Vec<u32>)> {
     let count = list.len();
     let (name, topology, fits) = match mode {
         Mode::Points => ("points", Topology::Points, count >= 1),
-        Mode::Lines => ("lines", Topology::Lines, count >= 2 && count % 2 == 0),
+        Mode::Lines => ("lines", Topology::Lines, count >= 2 && count.is_multiple_of(2)),
         Mode::LineLoop => ("a line loop", Topology::Lines, count >= 2),
         Mode::LineStrip => ("a line strip", Topology::Lines, count >= 2),
-        Mode::Triangles => ("triangles", Topology::Triangles, count >= 3 && count % 3 == 0),
+        Mode::Triangles => ("triangles", Topology::Triangles, count >= 3 && count.is_multiple_of(3)),
         Mode::TriangleStrip => ("a triangle strip", Topology::Triangles, count >= 3),
         Mode::TriangleFan => ("a triangle fan", Topology::Triangles, count >= 3),
     };

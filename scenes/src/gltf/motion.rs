@@ -6,9 +6,17 @@ use super::fault::{broken, element, label, Fault, Outcome};
 use super::tree::{matrix, node_label, unit, Tree};
 use crate::animation::{AnimatedNode, Interpolate, Interpolation, Local, Track};
 use glam::{DAffine3, DQuat, DVec3};
+use gltf::json::accessor::Accessor;
 use gltf::json::animation::{Interpolation as Between, Property};
+use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked::Valid;
-use gltf::json::{Animation, Index};
+use gltf::json::{Animation, Index, Mesh};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A key of a channel counts as so many elements. Any number of channels may use one sampler, and each channel has a copy of its values
+/// (up to 32 bytes each), which is searched for its range.
+const KEY_COST: u64 = 16;
 
 /// The tracks on one node.
 #[derive(Default)]
@@ -16,9 +24,12 @@ struct Tracks {
     translation: Option<Track<DVec3>>,
     rotation: Option<Track<DQuat>>,
     scale: Option<Track<DVec3>>,
+    /// One for each morph target of the node's mesh.
+    weights: Option<Vec<Track<f64>>>,
 }
 
 impl Tracks {
+    /// True if some track moves the node itself.
     fn any(&self) -> bool {
         self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
     }
@@ -34,11 +45,16 @@ pub(super) struct Moving {
 impl Moving {
     pub(super) fn read(document: &Document, accessors: &Accessors, tree: &Tree) -> Outcome<Self> {
         let mut tracks: Vec<Tracks> = document.root.nodes.iter().map(|_| Tracks::default()).collect();
+        let mut shared = Shared { targets: target_counts(document), times: HashMap::new() };
         for (index, animation) in document.root.animations.iter().enumerate() {
             for at in 0..animation.channels.len() {
-                read_channel(document, accessors, (index, animation), at, &mut tracks).map_err(|fault| {
-                    fault.within(|| format!("{}, channel {at}", label("animation", index, animation.name.as_deref())))
-                })?;
+                read_channel(document, (accessors, &mut shared), (index, animation), at, &mut tracks).map_err(
+                    |fault| {
+                        fault.within(|| {
+                            format!("{}, channel {at}", label("animation", index, animation.name.as_deref()))
+                        })
+                    },
+                )?;
             }
         }
         let mut moves = vec![false; tracks.len()];
@@ -46,6 +62,11 @@ impl Moving {
             moves[node] = tracks[node].any() || tree.parents[node].is_some_and(|parent| moves[parent]);
         }
         Ok(Moving { tracks, moves })
+    }
+
+    /// The animated weights of the morph targets of the node's mesh; none if nothing animates them.
+    pub(super) fn weights(&self, node: usize) -> Option<&[Track<f64>]> {
+        self.tracks[node].weights.as_deref()
     }
 
     /// Whether the node moves: by itself or with an ancestor.
@@ -105,9 +126,37 @@ fn in_parts(local: &Local) -> Outcome<Local> {
     Ok(Local::Parts { translation, rotation, scale })
 }
 
+/// What the channels of a file have in common.
+struct Shared {
+    /// The number of morph targets of each mesh.
+    targets: Vec<usize>,
+    /// Key times in seconds, by accessor. Most files have many tracks with the same times.
+    times: HashMap<Index<Accessor>, Arc<[f64]>>,
+}
+
+impl Shared {
+    /// Reads key times, or finds those read before.
+    fn times(&mut self, accessors: &Accessors, index: Index<Accessor>) -> Outcome<Arc<[f64]>> {
+        if let Some(times) = self.times.get(&index) {
+            return Ok(times.clone());
+        }
+        let times = keys::<1>(accessors, index, Allowed::Floats)?;
+        let times: Arc<[f64]> = times.into_iter().map(|[time]| f64::from(time)).collect();
+        self.times.insert(index, times.clone());
+        Ok(times)
+    }
+}
+
+/// Reads the times or values of keys. They count as more than other elements.
+fn keys<const N: usize>(accessors: &Accessors, index: Index<Accessor>, allowed: Allowed) -> Outcome<Vec<[f32; N]>> {
+    let keys = accessors.vectors(index, allowed)?;
+    accessors.spend((KEY_COST - 1) * keys.len() as u64)?;
+    Ok(keys)
+}
+
 fn read_channel(
     document: &Document,
-    accessors: &Accessors,
+    (accessors, shared): (&Accessors, &mut Shared),
     (index, animation): (usize, &Animation),
     at: usize,
     tracks: &mut [Tracks],
@@ -131,24 +180,20 @@ fn read_channel(
             return broken(format!("its interpolation '{other}' is none of LINEAR, STEP and CUBICSPLINE"));
         }
     };
-    let inputs = || -> Outcome<Vec<f64>> {
-        let times = accessors.vectors::<1>(sampler.input, Allowed::Floats)?;
-        Ok(times.into_iter().map(|[time]| f64::from(time)).collect())
-    };
     let vectors = || -> Outcome<Vec<DVec3>> {
-        let values = accessors.vectors::<3>(sampler.output, Allowed::Floats)?;
+        let values = keys::<3>(accessors, sampler.output, Allowed::Floats)?;
         Ok(values.into_iter().map(|value| DVec3::from_array(value.map(f64::from))).collect())
     };
     let tracks = &mut tracks[node.value()];
     match target.path {
         Valid(Property::Translation) if tracks.translation.is_none() => {
-            tracks.translation = Some(track(interpolation, inputs()?, vectors()?)?)
+            tracks.translation = Some(track(interpolation, shared.times(accessors, sampler.input)?, vectors()?)?)
         }
         Valid(Property::Scale) if tracks.scale.is_none() => {
-            tracks.scale = Some(track(interpolation, inputs()?, vectors()?)?)
+            tracks.scale = Some(track(interpolation, shared.times(accessors, sampler.input)?, vectors()?)?)
         }
         Valid(Property::Rotation) if tracks.rotation.is_none() => {
-            let values = accessors.vectors::<4>(sampler.output, Allowed::Normalized)?;
+            let values = keys::<4>(accessors, sampler.output, Allowed::Normalized)?;
             let values = values.into_iter().map(|value| DQuat::from_array(value.map(f64::from)));
             // Tangents of splines are no rotations: only values get unit length.
             let values = if interpolation == Interpolation::CubicSpline {
@@ -159,7 +204,16 @@ fn read_channel(
             } else {
                 values.map(unit).collect::<Outcome<_>>()?
             };
-            tracks.rotation = Some(track(interpolation, inputs()?, values)?);
+            tracks.rotation = Some(track(interpolation, shared.times(accessors, sampler.input)?, values)?);
+        }
+        Valid(Property::MorphTargetWeights) if tracks.weights.is_none() => {
+            let mesh = document.root.nodes[node.value()].mesh;
+            let targets = mesh.and_then(|mesh| shared.targets.get(mesh.value())).copied().unwrap_or(0);
+            if targets > 0 {
+                let values = keys::<1>(accessors, sampler.output, Allowed::Normalized)?;
+                let read = weights(interpolation, shared.times(accessors, sampler.input)?, &values, targets);
+                tracks.weights = Some(read.map_err(|fault| fault.within(|| node_label(document, node.value())))?);
+            }
         }
         Valid(_) => {}
         _ => {
@@ -170,6 +224,36 @@ fn read_channel(
     Ok(())
 }
 
-fn track<T: Interpolate>(interpolation: Interpolation, times: Vec<f64>, values: Vec<T>) -> Outcome<Track<T>> {
-    Track::new(interpolation, times, values).map_err(Fault::Broken)
+/// Counts the morph targets of each mesh.
+fn target_counts(document: &Document) -> Vec<usize> {
+    let of_primitive = |primitive: &Primitive| primitive.targets.as_ref().map_or(0, Vec::len);
+    let of_mesh = |mesh: &Mesh| mesh.primitives.iter().map(of_primitive).max().unwrap_or(0);
+    document.root.meshes.iter().map(of_mesh).collect()
+}
+
+/// Makes a track for each target. Each key has the weights of all targets; a key of a spline has all in-tangents, then all weights,
+/// then all out-tangents (glTF 2.0, section 3.11).
+fn weights(
+    interpolation: Interpolation,
+    times: Arc<[f64]>,
+    values: &[[f32; 1]],
+    targets: usize,
+) -> Outcome<Vec<Track<f64>>> {
+    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    if times.len().checked_mul(each).and_then(|count| count.checked_mul(targets)) != Some(values.len()) {
+        return broken(format!(
+            "{} weights for {} keys of {targets} morph targets, which need {each} each",
+            values.len(),
+            times.len()
+        ));
+    }
+    let of_target = |target: usize| {
+        let values = values.chunks_exact(targets).map(|weights| f64::from(weights[target][0]));
+        track(interpolation, times.clone(), values.collect())
+    };
+    (0..targets).map(of_target).collect()
+}
+
+fn track<T: Interpolate>(interpolation: Interpolation, times: Arc<[f64]>, values: Vec<T>) -> Outcome<Track<T>> {
+    Track::with_times(interpolation, times, values).map_err(Fault::Broken)
 }

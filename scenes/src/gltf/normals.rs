@@ -11,7 +11,7 @@ const SHORTEST: f32 = 1e-6;
 ///
 /// glTF asks for flat normals where there are none, which needs three vertices a triangle. Sightline shades for orientation only
 /// and keeps the vertices shared.
-pub(super) fn complete(mesh: &mut Mesh) {
+pub(crate) fn complete(mesh: &mut Mesh) {
     mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
     let mut bad = false;
     for normal in &mut mesh.normals {

@@ -5,10 +5,14 @@ use super::document::Document;
 use super::fault::{broken, element, label, one_line, Fault, Outcome};
 use super::materials::{Look, Materials};
 use super::mesh;
-use super::skins::{self, Bent, Influence, Skeleton, Skeletons};
+use super::morphs;
+use super::motion::Moving;
+use super::skins::{self, Deforming, Influence, Skeleton, Skeletons};
 use super::tree::{node_label, placed, unit, Tree};
+use crate::animation::Track;
 use crate::check::MOST_OBJECTS;
 use crate::model::{Mesh, Object};
+use crate::morph::MorphTarget;
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::accessor::Accessor;
 use gltf::json::mesh::{Primitive, Semantic};
@@ -22,8 +26,8 @@ use std::path::Path;
 /// Longest object or mesh name kept, in characters: a node's name is copied to each of its instances.
 const LONGEST_NAME: usize = 200;
 
-/// Most vertices that skins bend: nodes that share a mesh each have it for themselves then, so that a small file could ask for much.
-const MOST_BENT_VERTICES: usize = 1 << 24;
+/// Most vertices of deformed meshes. Nodes that share a deformed mesh have a copy each, so a small file could ask for much memory.
+const MOST_DEFORMED_VERTICES: usize = 1 << 24;
 
 /// A mesh primitive that has been read, and what its material says.
 #[derive(Clone, Copy)]
@@ -38,6 +42,8 @@ pub(super) struct Placement {
     pub node: usize,
     /// Node from object: identity, but for instances.
     pub node_from_object: DAffine3,
+    /// World from the space of the nodes: identity, but for instances of a mesh with a skin.
+    pub world_from_tree: DAffine3,
 }
 
 /// EXT_mesh_gpu_instancing, which the crate does not know.
@@ -51,39 +57,49 @@ pub(super) struct Objects<'a> {
     document: &'a Document<'a>,
     accessors: &'a Accessors<'a>,
     skeletons: &'a Skeletons,
-    /// By mesh, and by node if the node has morph weights of its own.
+    moving: &'a Moving,
+    /// Indexed by mesh, and by node if the node has morph weights or a skin of its own.
     parts: HashMap<(Index<FileMesh>, Option<usize>), Vec<Part>>,
     indices: usize,
-    bent_vertices: usize,
+    deformed_vertices: usize,
+    displacements: usize,
+    /// Morph targets of animated weight, by mesh. An entry is taken out when the objects of the mesh are added.
+    targets: HashMap<u32, Vec<MorphTarget>>,
     /// The materials of those meshes, and their textures.
     pub materials: Materials<'a>,
     /// What has been found so far.
     pub meshes: Vec<Mesh>,
     pub objects: Vec<Object>,
     pub placements: Vec<Placement>,
-    /// Those that skins bend.
-    pub bent: Vec<Bent>,
+    /// Meshes that skins or morph targets deform.
+    pub deforming: Vec<Deforming>,
+    /// Animated weights of morph targets.
+    pub weights: Vec<Track<f64>>,
 }
 
 impl<'a> Objects<'a> {
     pub(super) fn new(
         document: &'a Document,
         accessors: &'a Accessors<'a>,
-        skeletons: &'a Skeletons,
+        (skeletons, moving): (&'a Skeletons, &'a Moving),
         folder: &'a Path,
     ) -> Self {
         Objects {
             document,
             accessors,
             skeletons,
+            moving,
             parts: HashMap::new(),
             indices: 0,
-            bent_vertices: 0,
+            deformed_vertices: 0,
+            displacements: 0,
+            targets: HashMap::new(),
             materials: Materials::new(document, accessors, folder),
             meshes: Vec::new(),
             objects: Vec::new(),
             placements: Vec::new(),
-            bent: Vec::new(),
+            deforming: Vec::new(),
+            weights: Vec::new(),
         }
     }
 
@@ -93,14 +109,7 @@ impl<'a> Objects<'a> {
         let Some(mesh) = root.nodes[node].mesh else { return Ok(()) };
         let parts = self.parts(node, mesh)?;
         let skin = root.nodes[node].skin;
-        let extensions = root.nodes[node].extensions.as_ref();
-        let instances = match extensions.and_then(|extensions| extensions.others.get("EXT_mesh_gpu_instancing")) {
-            Some(_) if skin.is_some() => return Err(instanced_skin()),
-            Some(instancing) => self.instances(instancing).map_err(|fault| {
-                fault.within(|| format!("{}: EXT_mesh_gpu_instancing", node_label(self.document, node)))
-            })?,
-            None => vec![DAffine3::IDENTITY],
-        };
+        let instances = self.instances_of(node)?;
         let total = parts.len().checked_mul(instances.len()).and_then(|more| more.checked_add(self.objects.len()));
         if total.is_none_or(|total| total > MOST_OBJECTS) {
             return Err(Fault::TooLarge(format!("it has more than {MOST_OBJECTS} objects")));
@@ -109,15 +118,19 @@ impl<'a> Objects<'a> {
             Some(skin) => self.influences(mesh, &parts, self.skeletons.of(skin))?.into_iter(),
             None => Vec::new().into_iter(),
         };
-        // What a skeleton bends hangs on that, wherever its node is.
+        // A skinned mesh hangs on its skeleton, wherever its node is.
         let carrier = skin.map_or(node, |skin| self.skeletons.of(skin).anchor);
         let name = root.nodes[node].name.as_deref().or(root.meshes[mesh.value()].name.as_deref());
         let name = name.map_or_else(|| format!("node {node}"), |name| one_line(name, LONGEST_NAME));
         for (index, part) in parts.iter().enumerate() {
             let name = if parts.len() == 1 { name.clone() } else { format!("{name}/{index}") };
-            for (instance, &node_from_object) in instances.iter().enumerate() {
+            let first = self.objects.len() as u32;
+            for (instance, place) in
+                instances.iter().map(|place| placement(carrier, *place, skin.is_some())).enumerate()
+            {
                 let name = if instances.len() == 1 { name.clone() } else { format!("{name}#{instance}") };
-                let world_from_object = placed(tree.world_from_node[carrier], node_from_object);
+                let world_from_object =
+                    placed(place.world_from_tree, placed(tree.world_from_node[carrier], place.node_from_object));
                 if !world_from_object.is_finite() {
                     return broken(format!(
                         "{}: its place in the world is not finite",
@@ -135,30 +148,49 @@ impl<'a> Objects<'a> {
                     masked,
                     surface,
                 });
-                self.placements.push(Placement { node: carrier, node_from_object });
-                if let Some((skin, influences)) = skin.zip(influences.next()) {
-                    // There are at most 2^24 objects.
-                    let object = self.objects.len() as u32 - 1;
-                    self.bent.push(Bent { object, skin: skin.value(), influences });
-                }
+                self.placements.push(place);
+            }
+            let (targets, influences) = (self.targets.remove(&part.mesh), influences.next());
+            // Without instances no object has the mesh.
+            if (targets.is_some() || influences.is_some()) && !instances.is_empty() {
+                self.deforming.push(Deforming {
+                    mesh: part.mesh,
+                    object: first,
+                    skin: skin.map(|skin| skin.value()),
+                    influences: influences.unwrap_or_default(),
+                    targets: targets.unwrap_or_default(),
+                });
             }
         }
         Ok(())
     }
 
+    /// Node from object of each instance of a node: identity without EXT_mesh_gpu_instancing.
+    fn instances_of(&self, node: usize) -> Outcome<Vec<DAffine3>> {
+        let extensions = self.document.root.nodes[node].extensions.as_ref();
+        match extensions.and_then(|extensions| extensions.others.get("EXT_mesh_gpu_instancing")) {
+            Some(instancing) => self.instances(instancing).map_err(|fault| {
+                fault.within(|| format!("{}: EXT_mesh_gpu_instancing", node_label(self.document, node)))
+            }),
+            None => Ok(vec![DAffine3::IDENTITY]),
+        }
+    }
+
     /// The primitives of a mesh, read when first needed.
     fn parts(&mut self, node: usize, index: Index<FileMesh>) -> Outcome<Vec<Part>> {
         let document = self.document;
-        let own_weights = document.root.nodes[node].weights.as_deref();
-        // What is bent is nobody else's.
-        let is_own = own_weights.is_some() || document.root.nodes[node].skin.is_some();
+        let of_node = &document.root.nodes[node];
+        // No two nodes share a deformed mesh.
+        let is_own = of_node.weights.is_some() || of_node.skin.is_some() || self.moving.weights(node).is_some();
         let key = (index, is_own.then_some(node));
         if let Some(parts) = self.parts.get(&key) {
             return Ok(parts.clone());
         }
         let mesh =
             element(&document.root, index, "mesh").map_err(|fault| fault.within(|| node_label(document, node)))?;
-        let weights = own_weights.or(mesh.weights.as_deref()).unwrap_or(&[]);
+        let weights = self.weights_of(node, mesh);
+        // The index of each weight among all animated weights, once a target uses it.
+        let mut numbers = vec![None; weights.moves.len()];
         let mut parts = Vec::new();
         for (at, primitive) in mesh.primitives.iter().enumerate() {
             let place = || format!("{}, primitive {at}", label("mesh", index.value(), mesh.name.as_deref()));
@@ -166,20 +198,75 @@ impl<'a> Objects<'a> {
                 mesh.name.as_deref().map_or_else(|| format!("mesh {index}"), |name| one_line(name, LONGEST_NAME));
             let name = if mesh.primitives.len() == 1 { name } else { format!("{name}/{at}") };
             let said_mode = || document.said(&format!("/meshes/{index}/primitives/{at}/mode"));
-            let read = mesh::read(self.accessors, primitive, weights, name, &mut self.indices, said_mode)
+            let read = mesh::read(self.accessors, primitive, &weights, name, &mut self.indices, said_mode)
                 .map_err(|fault| fault.within(place))?;
-            let Some(mut read) = read else {
+            let Some((mut read, targets)) = read else {
                 tracing::warn!("{} has no positions and is not drawn", place());
                 continue;
             };
             // At most one mesh an object and index, both far below 2^32.
             let mesh = self.meshes.len() as u32;
             let look = self.materials.apply(primitive, &mut read).map_err(|fault| fault.within(place))?;
+            self.keep_targets(node, mesh, (&read, targets), &mut numbers)?;
             self.meshes.push(read);
             parts.push(Part { mesh, look });
         }
         self.parts.insert(key, parts.clone());
         Ok(parts)
+    }
+
+    /// Returns the weights of a mesh's morph targets on a node. Animated weights that never change are fixed.
+    fn weights_of(&self, node: usize, mesh: &FileMesh) -> morphs::Weights {
+        let by_default = self.document.root.nodes[node].weights.as_deref().or(mesh.weights.as_deref());
+        match self.moving.weights(node) {
+            None => morphs::Weights { fixed: by_default.unwrap_or(&[]).to_vec(), moves: Vec::new() },
+            Some(tracks) => {
+                let fixed = |track: &Track<f64>| Some(track.at(0.0) as f32).filter(|_| track.is_constant());
+                morphs::Weights {
+                    fixed: tracks.iter().map(|track| fixed(track).unwrap_or(0.0)).collect(),
+                    moves: tracks.iter().map(|track| fixed(track).is_none()).collect(),
+                }
+            }
+        }
+    }
+
+    /// Keeps the targets that move a mesh until its objects are added. `numbers` has the index of each of the node's weights among all
+    /// weights.
+    fn keep_targets(
+        &mut self,
+        node: usize,
+        index: u32,
+        (mesh, moving): (&Mesh, Vec<morphs::Moving>),
+        numbers: &mut [Option<u32>],
+    ) -> Outcome<()> {
+        let tracks = self.moving.weights(node).unwrap_or(&[]);
+        if moving.is_empty() {
+            return Ok(());
+        }
+        self.count_deformed(mesh.positions.len())?;
+        let mut targets = Vec::with_capacity(moving.len());
+        for (target, displacements) in moving {
+            self.displacements += displacements.len();
+            morphs::check_displacements(self.displacements)?;
+            let weight = *numbers[target].get_or_insert_with(|| {
+                self.weights.push(tracks[target].clone());
+                // Fewer than displacements.
+                self.weights.len() as u32 - 1
+            });
+            targets.push(MorphTarget { weight, displacements });
+        }
+        self.targets.insert(index, targets);
+        Ok(())
+    }
+
+    fn count_deformed(&mut self, vertices: usize) -> Outcome<()> {
+        self.deformed_vertices += vertices;
+        match self.deformed_vertices > MOST_DEFORMED_VERTICES {
+            true => {
+                Err(Fault::TooLarge(format!("its deformed meshes have more than {MOST_DEFORMED_VERTICES} vertices")))
+            }
+            false => Ok(()),
+        }
     }
 
     /// What joints carry of each of a mesh's parts.
@@ -195,10 +282,7 @@ impl<'a> Objects<'a> {
         let mut all = Vec::with_capacity(parts.len());
         for ((at, primitive), part) in drawn.zip(parts) {
             let vertices = self.meshes[part.mesh as usize].positions.len();
-            self.bent_vertices += vertices;
-            if self.bent_vertices > MOST_BENT_VERTICES {
-                return Err(Fault::TooLarge(format!("its skins bend more than {MOST_BENT_VERTICES} vertices")));
-            }
+            self.count_deformed(vertices)?;
             let place = || format!("{}, primitive {at}", label("mesh", index.value(), mesh.name.as_deref()));
             let read = skins::influences(self.accessors, primitive, vertices, skeleton);
             all.push(read.map_err(|fault| fault.within(place))?);
@@ -247,10 +331,11 @@ impl<'a> Objects<'a> {
     }
 }
 
-/// No one says where an instance of a mesh would be that is wherever its joints are.
-fn instanced_skin() -> Fault {
-    Fault::Unsupported {
-        what: "a skinned mesh with EXT_mesh_gpu_instancing".into(),
-        remedy: "give each instance a node and a skin of its own".into(),
+/// Places an instance. EXT_mesh_gpu_instancing puts it at NodeWorldXform * InstanceXform. glTF 3.7.3.3 ignores the node's transform where there is
+/// a skin, which puts vertices into the world; the instance's transform stays. `carrier` is the node, or the anchor of its skin.
+fn placement(carrier: usize, instance: DAffine3, skinned: bool) -> Placement {
+    match skinned {
+        false => Placement { node: carrier, node_from_object: instance, world_from_tree: DAffine3::IDENTITY },
+        true => Placement { node: carrier, node_from_object: DAffine3::IDENTITY, world_from_tree: instance },
     }
 }

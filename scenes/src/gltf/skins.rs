@@ -8,8 +8,9 @@ use super::document::Document;
 use super::fault::{broken, element, label, Fault, Outcome};
 use super::motion::Moving;
 use super::tree::{affine, matrix, node_label, Tree};
-use crate::bend::bend_mesh;
+use crate::bend::bend_for_ever;
 use crate::model::Scene;
+use crate::morph::{Deformed, MorphTarget};
 use crate::skin::{weights_of_sum_one, RestVertex, Skin, JOINTS_A_VERTEX};
 use glam::DAffine3;
 use gltf::json::mesh::{Primitive, Semantic};
@@ -32,11 +33,35 @@ pub(super) struct Skeleton {
     joint_from_rest: Vec<DAffine3>,
 }
 
-/// An object that has been read, whose mesh is bent.
-pub(super) struct Bent {
+/// A mesh that has been read and that is deformed.
+pub(super) struct Deforming {
+    pub(super) mesh: u32,
+    /// The first object that has it.
     pub(super) object: u32,
-    pub(super) skin: usize,
+    pub(super) skin: Option<usize>,
+    /// One a vertex; none without a skin.
     pub(super) influences: Vec<Influence>,
+    /// Targets whose weight is animated.
+    pub(super) targets: Vec<MorphTarget>,
+}
+
+impl Deforming {
+    /// True if the mesh changes its shape with time. `moving` has a flag for each skin that moves.
+    pub(super) fn moves(&self, moving: &[bool]) -> bool {
+        !self.targets.is_empty() || self.skin.is_some_and(|skin| moving[skin])
+    }
+
+    /// Returns the vertices at rest: those of the mesh.
+    fn rest(&mut self, scene: &Scene) -> Vec<RestVertex> {
+        let mesh = &scene.meshes[self.mesh as usize];
+        let mut influences = std::mem::take(&mut self.influences).into_iter();
+        let vertices = mesh.positions.iter().zip(&mesh.normals);
+        let vertex = vertices.map(|(position, normal)| {
+            let (joints, weights) = influences.next().unwrap_or_default();
+            RestVertex { position: *position, normal: *normal, joints, weights }
+        });
+        vertex.collect()
+    }
 }
 
 /// The skins that nodes of the scene use, by number.
@@ -75,44 +100,43 @@ impl Skeletons {
         bones
     }
 
-    /// Bends objects: for ever, or, where something moves their skin, as it does. `places` has the place of each node of the file in the scene's animation.
-    pub(super) fn bend(
+    /// Deforms meshes. A mesh whose skin never moves is bent once; other meshes are handed over to the scene. `places` has the index of
+    /// each node of the file in the scene's animation.
+    pub(super) fn deform(
         &self,
         scene: &mut Scene,
         tree: &Tree,
         (moving, places): (&[bool], &[Option<usize>]),
-        bent: Vec<Bent>,
+        deforming: Vec<Deforming>,
     ) -> Outcome<()> {
-        let mut skins = BTreeMap::new();
-        for Bent { object, skin, influences } in bent {
-            let skeleton = &self.0[&skin];
-            let mesh = &mut scene.meshes[scene.objects[object as usize].mesh as usize];
-            let vertices = mesh.positions.iter().zip(&mesh.normals).zip(influences);
-            let rest = vertices.map(|((position, normal), (joints, weights))| RestVertex {
-                position: *position,
-                normal: *normal,
-                joints,
-                weights,
-            });
-            let rest: Vec<RestVertex> = rest.collect();
-            if !moving[skin] {
-                bend_mesh(mesh, &rest, &skeleton.object_from_rest(tree));
-                mesh.declared_bounds = None;
-                continue;
-            }
-            let name = scene.objects[object as usize].name.clone();
+        let (mut skins, mut deformed) = (BTreeMap::new(), Vec::new());
+        for mut deforming in deforming {
+            let name = scene.objects[deforming.object as usize].name.clone();
             let fault = |fault| Fault::Broken(format!("object '{name}': {fault}"));
-            let number = match skins.get(&skin) {
-                Some(number) => *number,
-                None => {
-                    scene.skins.push(skeleton.skin(scene, places).map_err(fault)?);
-                    // There are no more than objects, 2^24.
-                    *skins.entry(skin).or_insert(scene.skins.len() as u32 - 1)
+            let mut rest = deforming.rest(scene);
+            let (moves, Deforming { mesh, skin, mut targets, .. }) = (deforming.moves(moving), deforming);
+            let skin = match skin {
+                Some(still) if !moving[still] => {
+                    let (mesh, places) = (&mut scene.meshes[mesh as usize], self.0[&still].object_from_rest(tree));
+                    bend_for_ever(mesh, &mut rest, &mut targets, &places);
+                    mesh.declared_bounds = None;
+                    None
                 }
+                Some(skin) => match skins.get(&skin) {
+                    Some(number) => Some(*number),
+                    None => {
+                        scene.skins.push(self.0[&skin].skin(scene, places).map_err(fault)?);
+                        // There are no more than objects, 2^24.
+                        Some(*skins.entry(skin).or_insert(scene.skins.len() as u32 - 1))
+                    }
+                },
+                None => None,
             };
-            scene.bend(object, number, rest).map_err(fault)?;
+            if moves {
+                deformed.push(Deformed { mesh, skin, rest, targets });
+            }
         }
-        Ok(())
+        scene.deform(deformed).map_err(|error| Fault::Broken(error.to_string()))
     }
 
     /// By number of the file's skins: something moves it.
@@ -206,45 +230,85 @@ fn lowest_above(tree: &Tree, nodes: &[usize]) -> usize {
     common.last().copied().unwrap_or(nodes[0])
 }
 
-/// What of each vertex joints carry. Of vertices that more than four carry, the first four count.
+/// A set of joints and weights of a primitive: JOINTS_n and WEIGHTS_n.
+struct Set {
+    number: u32,
+    joints: Vec<[u32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
+
+impl Set {
+    /// Reads a set; none if the primitive does not have it.
+    fn read(accessors: &Accessors, primitive: &Primitive, vertices: usize, number: u32) -> Outcome<Option<Self>> {
+        let attribute = |semantic: Semantic, name: &str| {
+            let Some(&index) = primitive.attributes.get(&Valid(semantic)) else {
+                return broken(format!("its node has a skin, but it has no {name}"));
+            };
+            let count = accessors.count(index)?;
+            if count != vertices as u64 {
+                return broken(format!(
+                    "{name}: accessor {index} has {count} elements, but there are {vertices} positions"
+                ));
+            }
+            Ok(index)
+        };
+        let has = |semantic: Semantic| primitive.attributes.contains_key(&Valid(semantic));
+        if number > 0 && !has(Semantic::Joints(number)) && !has(Semantic::Weights(number)) {
+            return Ok(None);
+        }
+        let [joints_n, weights_n] = [format!("JOINTS_{number}"), format!("WEIGHTS_{number}")];
+        let joints = attribute(Semantic::Joints(number), &joints_n)?;
+        let weights = attribute(Semantic::Weights(number), &weights_n)?;
+        let joints = accessors.joints(joints).map_err(|fault| fault.within(|| joints_n))?;
+        let weights = accessors.vectors::<4>(weights, Allowed::Normalized);
+        let set = Set { number, joints, weights: weights.map_err(|fault| fault.within(|| weights_n.clone()))? };
+        for (vertex, weights) in set.weights.iter().enumerate() {
+            if let Some(weight) = weights.iter().find(|weight| !(**weight >= 0.0 && weight.is_finite())) {
+                return broken(format!("{weights_n}: a weight of vertex {vertex} is {weight}; weights are 0 or more"));
+            }
+        }
+        Ok(Some(set))
+    }
+
+    /// Adds the set to the influences of each vertex. A vertex of more than eight joints keeps those of the largest weights.
+    fn add_to(&self, influences: &mut [Influence], joints: usize) -> Outcome<()> {
+        for (vertex, (joints_now, weights_now)) in influences.iter_mut().enumerate() {
+            // A vertex without weights hangs on its first joint.
+            if self.number == 0 && (self.joints[vertex][0] as usize) < joints {
+                joints_now[0] = self.joints[vertex][0];
+            }
+            for (joint, weight) in self.joints[vertex].into_iter().zip(self.weights[vertex]) {
+                // A joint without weight may be any number.
+                if weight > 0.0 && joint as usize >= joints {
+                    return broken(format!(
+                        "JOINTS_{}: vertex {vertex} refers to joint {joint}, but its skin has {joints}",
+                        self.number
+                    ));
+                }
+                let least = (1..JOINTS_A_VERTEX).fold(0, |a, b| if weights_now[b] < weights_now[a] { b } else { a });
+                if weight > weights_now[least] {
+                    (joints_now[least], weights_now[least]) = (joint, weight);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reads the joints that carry each vertex, and their weights, which add up to 1.
 pub(super) fn influences(
     accessors: &Accessors,
     primitive: &Primitive,
     vertices: usize,
     skeleton: &Skeleton,
 ) -> Outcome<Vec<Influence>> {
-    let attribute = |semantic: Semantic, name: &str| {
-        let Some(&index) = primitive.attributes.get(&Valid(semantic)) else {
-            return broken(format!("its node has a skin, but it has no {name}"));
-        };
-        let count = accessors.count(index)?;
-        if count != vertices as u64 {
-            return broken(format!(
-                "{name}: accessor {index} has {count} elements, but there are {vertices} positions"
-            ));
+    let mut influences = vec![Influence::default(); vertices];
+    for number in 0.. {
+        match Set::read(accessors, primitive, vertices, number)? {
+            Some(set) => set.add_to(&mut influences, skeleton.joints.len())?,
+            None => break,
         }
-        Ok(index)
-    };
-    let joints_at = attribute(Semantic::Joints(0), "JOINTS_0")?;
-    let weights_at = attribute(Semantic::Weights(0), "WEIGHTS_0")?;
-    let joints = accessors.joints(joints_at).map_err(|fault| fault.within(|| "JOINTS_0".into()))?;
-    let weights =
-        accessors.vectors::<4>(weights_at, Allowed::Normalized).map_err(|fault| fault.within(|| "WEIGHTS_0".into()))?;
-    let one = |(vertex, (joints, weights)): (usize, ([u32; 4], [f32; 4]))| {
-        if let Some(weight) = weights.iter().find(|weight| !(**weight >= 0.0 && weight.is_finite())) {
-            return broken(format!("WEIGHTS_0: a weight of vertex {vertex} is {weight}; weights are 0 or more"));
-        }
-        let weights = weights_of_sum_one(weights);
-        let count = skeleton.joints.len();
-        // What has no weight may name any joint.
-        let carrying = |at: usize| if weights[at] > 0.0 { joints[at] } else { 0 };
-        let joints = std::array::from_fn(carrying);
-        match joints.iter().find(|joint| **joint as usize >= count) {
-            Some(joint) => {
-                broken(format!("JOINTS_0: vertex {vertex} refers to joint {joint}, but its skin has {count}"))
-            }
-            None => Ok((joints, weights)),
-        }
-    };
-    joints.into_iter().zip(weights).enumerate().map(one).collect()
+    }
+    influences.iter_mut().for_each(|(_, weights)| *weights = weights_of_sum_one(*weights));
+    Ok(influences)
 }

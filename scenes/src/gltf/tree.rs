@@ -42,6 +42,15 @@ impl Tree {
         }
         Ok(Tree { parents, roots, order, locals, world_from_node })
     }
+
+    /// World from the camera on a node, where no animation moves it. The node's own scale is ignored (3.10.2).
+    pub(super) fn world_from_camera(&self, node: usize) -> DAffine3 {
+        let own = match self.locals[node] {
+            Local::Matrix(matrix) => matrix,
+            Local::Parts { translation, rotation, .. } => DAffine3::from_rotation_translation(rotation, translation),
+        };
+        placed(self.parents[node].map_or(DAffine3::IDENTITY, |parent| self.world_from_node[parent]), own)
+    }
 }
 
 pub(super) fn node_label(document: &Document, index: usize) -> String {

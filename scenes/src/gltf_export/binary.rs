@@ -6,7 +6,6 @@ use gltf::binary::{Glb, Header};
 use serde_json::{json, Value};
 
 const FLOAT: u32 = 5126;
-const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 
@@ -52,16 +51,6 @@ impl Binary {
         let start = self.bytes.len();
         self.bytes.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
         self.accessor(start, 1, UNSIGNED_INT, "SCALAR")
-    }
-
-    /// Colours of 8 bits a channel; returns the accessor.
-    pub(super) fn colours(&mut self, colours: &[[u8; 4]]) -> usize {
-        let start = self.bytes.len();
-        self.bytes.extend_from_slice(colours.as_flattened());
-        // An element is as wide as a float.
-        let accessor = self.accessor(start, 1, UNSIGNED_BYTE, "VEC4");
-        self.accessors[accessor]["normalized"] = true.into();
-        accessor
     }
 
     /// Joints, four a vertex, each of 16 bits; returns the accessor.

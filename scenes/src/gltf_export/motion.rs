@@ -1,13 +1,15 @@
 //! Animations: the path's camera and the moving objects, one key a frame.
 
 use super::Export;
-use crate::animation::Motion;
+use crate::animation::{AnimatedNode, Local, Motion, NodeAnimation, Orbit, Track};
 use crate::camera::{Pose, Projection};
 use crate::error::SceneError;
 use crate::model::Scene;
 use crate::path::{CameraPath, Shot};
+use crate::skin::Skin;
 use glam::{DAffine3, DQuat, DVec3};
-use serde_json::json;
+use serde_json::{json, Value};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// Keys a second of a path.
@@ -42,6 +44,56 @@ pub(super) fn samples(scene: &Scene, path: Option<&CameraPath>, frames: usize) -
     (0..frames).map(|frame| Sample { time: at(frame) as f32, seconds: at(frame), shot: None }).collect()
 }
 
+/// The nodes of the file that hold the scene's animation. The tree of animated nodes may stand at several places.
+#[derive(Default)]
+pub(super) struct Trees(HashMap<PlaceKey, HashMap<usize, usize>>);
+
+/// The bits of a place's matrix.
+type PlaceKey = [u64; 12];
+
+fn key(place: &DAffine3) -> PlaceKey {
+    // -0 becomes 0: equal places have equal bits.
+    place.to_cols_array().map(|number| (number + 0.0).to_bits())
+}
+
+impl Trees {
+    /// Returns the file's node of a node of the animation, in the tree at a place; none if it was not written there.
+    pub(super) fn at(&self, world_from_tree: &DAffine3, node: usize) -> Option<usize> {
+        self.0.get(&key(world_from_tree))?.get(&node).copied()
+    }
+}
+
+/// The animated nodes that the file needs at each place, in the order in which places are first needed.
+#[derive(Default)]
+struct Needed {
+    places: Vec<(DAffine3, BTreeSet<usize>)>,
+    index: HashMap<PlaceKey, usize>,
+}
+
+impl Needed {
+    /// Adds a node and all above it.
+    fn add(&mut self, nodes: &NodeAnimation, world_from_tree: &DAffine3, node: usize) {
+        let at = *self.index.entry(key(world_from_tree)).or_insert(self.places.len());
+        if at == self.places.len() {
+            self.places.push((*world_from_tree, BTreeSet::new()));
+        }
+        let needed = &mut self.places[at].1;
+        let mut next = Some(node);
+        while let Some(node) = next.filter(|node| needed.insert(*node)) {
+            next = nodes.nodes()[node].parent;
+        }
+    }
+}
+
+/// Returns the skins of the file, with the place of each skeleton: the scene's skins, then one for each instance that stands elsewhere.
+pub(super) fn placed_skins<'a>(
+    scene: &'a Scene,
+    placed: &'a [(u32, DAffine3)],
+) -> impl Iterator<Item = (&'a Skin, DAffine3)> + 'a {
+    let placed = placed.iter().map(|(skin, place)| (&scene.skins[*skin as usize], *place));
+    scene.skins.iter().map(|skin| (skin, DAffine3::IDENTITY)).chain(placed)
+}
+
 impl Export {
     /// The path as an animated camera.
     pub(super) fn path_camera(&mut self, path: &CameraPath, samples: &[Sample]) -> Result<(), SceneError> {
@@ -49,46 +101,138 @@ impl Export {
         let Some(first) = shots.first() else { return Ok(()) };
         let name = format!("path {}", path.name());
         let lens = widest(&shots).unwrap_or(first.projection);
-        let node = self.camera(&name, &lens, json!({ "name": name }))?;
+        let node = self.camera(&name, &lens, path.aspect(), json!({ "name": name }))?;
         let poses = shots.iter().map(|shot| shot.pose).collect();
         let times = self.times(samples);
         self.rigid(node, times, poses);
         Ok(())
     }
 
-    /// Every moving object's keys.
-    pub(super) fn object_motion(&mut self, scene: &Scene, samples: &[Sample]) {
-        if samples.is_empty() || matches!(scene.motion, Motion::Still) {
-            return;
+    /// Writes the motion of objects. Returns the file's node of each node of the scene's animation.
+    pub(super) fn object_motion(&mut self, scene: &Scene, samples: &[Sample]) -> Trees {
+        match &scene.motion {
+            Motion::Still => Trees::default(),
+            Motion::Orbits(orbits) => {
+                self.orbits(orbits, samples);
+                Trees::default()
+            }
+            Motion::Nodes(nodes) => self.animated_nodes(scene, nodes, samples),
+        }
+    }
+
+    fn orbits(&mut self, orbits: &[Orbit], samples: &[Sample]) {
+        let times = self.times(samples);
+        for orbit in orbits {
+            let pose = |sample: &Sample| {
+                // The object's own matrix stays on its node; this node carries it about, rigidly, so nothing is lost.
+                let angle = (orbit.radians_per_s * sample.seconds) % TAU;
+                let turn =
+                    orbit.axis.try_normalize().map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle));
+                let place = orbit.world_from_object(sample.seconds).translation;
+                Pose { position: place - turn * orbit.base.translation, rotation: turn }
+            };
+            let poses = samples.iter().map(pose).collect();
+            let carrier = self.carrier(orbit.object as usize);
+            self.nodes[orbit.object as usize]["matrix"] = super::matrix(&orbit.base);
+            self.rigid(carrier, times, poses);
+        }
+    }
+
+    /// Writes the tree of animated nodes as it is, once for each place at which it stands. Only nodes that joints or objects need are
+    /// written, and all above them. glTF can store a node's own translation, rotation and scale as keys. It could not store the node's
+    /// place in the world where a parent's scale or matrix shears it.
+    fn animated_nodes(&mut self, scene: &Scene, nodes: &NodeAnimation, samples: &[Sample]) -> Trees {
+        // The joints of a skinned object give its place.
+        let is_bent = |object: u32| {
+            let deformed = scene.deformation_of(scene.objects[object as usize].mesh);
+            deformed.is_some_and(|deformed| deformed.skin.is_some())
+        };
+        let mut needed = Needed::default();
+        for (skin, place) in placed_skins(scene, &self.placed_skins) {
+            skin.joints().iter().for_each(|joint| needed.add(nodes, &place, joint.node));
+        }
+        for attachment in nodes.objects().iter().filter(|attachment| !is_bent(attachment.object)) {
+            needed.add(nodes, &attachment.world_from_tree, attachment.node);
         }
         let times = self.times(samples);
-        if let Motion::Orbits(orbits) = &scene.motion {
-            for orbit in orbits {
-                let pose = |sample: &Sample| {
-                    // The object's own matrix stays on its node; this node carries it about, rigidly, so nothing is lost.
-                    let angle = (orbit.radians_per_s * sample.seconds) % TAU;
-                    let turn =
-                        orbit.axis.try_normalize().map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle));
-                    let place = orbit.world_from_object(sample.seconds).translation;
-                    Pose { position: place - turn * orbit.base.translation, rotation: turn }
-                };
-                let poses = samples.iter().map(pose).collect();
-                let carrier = self.carrier(orbit.object as usize);
-                self.nodes[orbit.object as usize]["matrix"] = super::matrix(&orbit.base);
-                self.rigid(carrier, times, poses);
+        let mut written = Trees::default();
+        for (world_from_tree, some) in &needed.places {
+            let tree = self.tree(nodes, (world_from_tree, some), (times, samples));
+            written.0.insert(key(world_from_tree), tree);
+        }
+        let mut hung = HashSet::new();
+        for attachment in nodes.objects().iter().filter(|attachment| !is_bent(attachment.object)) {
+            let object = attachment.object as usize;
+            if let Some(node) = self.nodes[object].as_object_mut() {
+                node.remove("matrix");
             }
+            if attachment.node_from_object != DAffine3::IDENTITY {
+                self.nodes[object]["matrix"] = super::matrix(&attachment.node_from_object);
+            }
+            if let Some(parent) = written.at(&attachment.world_from_tree, attachment.node) {
+                self.hang(object, parent);
+                hung.insert(object);
+            }
+        }
+        self.roots.retain(|root| !hung.contains(root));
+        written
+    }
+
+    /// Writes some nodes of the tree at one place; parents are among them. Returns the file's node of each.
+    fn tree(
+        &mut self,
+        nodes: &NodeAnimation,
+        (world_from_tree, some): (&DAffine3, &BTreeSet<usize>),
+        (times, samples): (usize, &[Sample]),
+    ) -> HashMap<usize, usize> {
+        let mut written: HashMap<usize, usize> = HashMap::with_capacity(some.len());
+        // Parents come before their children.
+        for &index in some {
+            let animated = &nodes.nodes()[index];
+            let node = self.nodes.len();
+            self.nodes.push(at_rest(animated));
+            let world_from_root = *world_from_tree * animated.world_from_root;
+            match animated.parent.and_then(|parent| written.get(&parent)) {
+                Some(&parent) => self.hang(node, parent),
+                None if world_from_root == DAffine3::IDENTITY => self.roots.push(node),
+                None => {
+                    self.roots.push(self.nodes.len());
+                    self.nodes.push(json!({ "matrix": super::matrix(&world_from_root), "children": [node] }));
+                }
+            }
+            self.keys(node, animated, times, samples);
+            written.insert(index, node);
+        }
+        written
+    }
+
+    fn hang(&mut self, node: usize, parent: usize) {
+        match self.nodes[parent]["children"].as_array_mut() {
+            Some(children) => children.push(node.into()),
+            None => self.nodes[parent]["children"] = json!([node]),
+        }
+    }
+
+    /// Writes the keys of a node's tracks.
+    fn keys(&mut self, node: usize, animated: &AnimatedNode, times: usize, samples: &[Sample]) {
+        if let Local::Matrix(_) = animated.local {
             return;
         }
-        let mut keys: Vec<Vec<DAffine3>> = vec![Vec::new(); scene.objects.len()];
-        let mut transforms = Vec::new();
-        for sample in samples {
-            scene.motion.transforms_at(sample.seconds, &mut transforms);
-            transforms.iter().for_each(|&(object, transform)| keys[object as usize].push(transform));
+        let vectors = |track: &Track<DVec3>| -> Vec<[f32; 3]> {
+            samples.iter().map(|sample| track.at(sample.seconds).as_vec3().to_array()).collect()
+        };
+        if let Some(track) = &animated.translation {
+            let values = self.binary.vectors("VEC3", vectors(track).into_iter());
+            self.channel(node, "translation", times, values);
         }
-        // Joints say where bent objects are.
-        scene.skinned.iter().for_each(|skinned| keys[skinned.object as usize].clear());
-        for (object, keys) in keys.iter().enumerate().filter(|(_, keys)| keys.len() == samples.len()) {
-            self.parts(object, times, keys);
+        if let Some(track) = &animated.rotation {
+            let values = samples.iter().map(|sample| unit(track.at(sample.seconds)));
+            let values = self.binary.vectors("VEC4", values);
+            self.channel(node, "rotation", times, values);
+        }
+        if let Some(track) = &animated.scale {
+            let values = self.binary.vectors("VEC3", vectors(track).into_iter());
+            self.channel(node, "scale", times, values);
         }
     }
 
@@ -108,30 +252,35 @@ impl Export {
 
     fn rigid(&mut self, node: usize, times: usize, poses: Vec<Pose>) {
         let translations = self.binary.vectors("VEC3", poses.iter().map(|pose| pose.position.as_vec3().to_array()));
-        let rotations = self.binary.vectors("VEC4", poses.iter().map(|pose| pose.rotation.as_quat().to_array()));
+        let rotations = self.binary.vectors("VEC4", poses.iter().map(|pose| unit(pose.rotation)));
         self.channel(node, "translation", times, translations);
         self.channel(node, "rotation", times, rotations);
     }
 
-    /// Keys of translation, rotation and scale in place of a node's matrix. One that is flat at some key cannot be
-    /// taken apart; it stays where it is at time 0.
-    pub(super) fn parts(&mut self, object: usize, times: usize, keys: &[DAffine3]) {
-        let parts: Vec<(DVec3, DQuat, DVec3)> = keys.iter().map(DAffine3::to_scale_rotation_translation).collect();
-        if !parts.iter().all(|(scale, rotation, _)| scale.is_finite() && rotation.is_finite()) {
-            return;
-        }
-        if let Some(node) = self.nodes[object].as_object_mut() {
-            node.remove("matrix");
-        }
-        let poses = parts.iter().map(|&(_, rotation, position)| Pose { position, rotation }).collect();
-        self.rigid(object, times, poses);
-        let scales = self.binary.vectors("VEC3", parts.iter().map(|(scale, _, _)| scale.as_vec3().to_array()));
-        self.channel(object, "scale", times, scales);
-    }
-
-    fn channel(&mut self, node: usize, property: &str, input: usize, output: usize) {
+    pub(super) fn channel(&mut self, node: usize, property: &str, input: usize, output: usize) {
         self.channels.push(json!({ "sampler": self.samplers.len(), "target": { "node": node, "path": property } }));
         self.samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+    }
+}
+
+/// A rotation of unit length in `f32`, as glTF wants it.
+fn unit(rotation: DQuat) -> [f32; 4] {
+    rotation.normalize().as_quat().to_array()
+}
+
+/// Writes a node at its place of time 0.
+fn at_rest(node: &AnimatedNode) -> Value {
+    match node.local {
+        Local::Matrix(matrix) => json!({ "matrix": super::matrix(&matrix) }),
+        Local::Parts { translation, rotation, scale } => {
+            let vector =
+                |track: &Option<Track<DVec3>>, still: DVec3| track.as_ref().map_or(still, |track| track.at(0.0));
+            json!({
+                "translation": vector(&node.translation, translation).to_array(),
+                "rotation": node.rotation.as_ref().map_or(rotation, |track| track.at(0.0)).to_array(),
+                "scale": vector(&node.scale, scale).to_array(),
+            })
+        }
     }
 }
 

@@ -6,15 +6,16 @@ use crate::animation::{AnimatedNode, NodeAnimation};
 use crate::bounds::Reach;
 use glam::{DAffine3, DVec3};
 
-/// Something of fixed shape that hangs on a node.
+/// A part of an object that hangs on a node.
 pub(super) struct Hung<'a> {
-    pub(super) reach: &'a Reach,
     /// Its place on the lowest node.
     pub(super) node_from_part: DAffine3,
     /// The node and those above it, the root last.
     pub(super) chain: Vec<&'a AnimatedNode>,
     /// The first of the chain that carries the whole object: 0 where the part is the object, the anchor's place for a part that a joint carries.
     pub(super) carrier: usize,
+    /// World from the space in which the nodes move.
+    pub(super) world_from_tree: DAffine3,
 }
 
 /// It on its way up: see the head of `moving.rs`.
@@ -31,9 +32,10 @@ pub(super) struct Carried {
 }
 
 impl Hung<'_> {
-    /// On its node, seen from a point of it. With `turned` nothing is moved, only turned and scaled.
-    pub(super) fn begin(&self, from: DVec3, turned: bool) -> Carried {
-        let corners = self.reach.in_object_space().corners();
+    /// Places the part on its node, relative to the point `from` of it. `reach` is that of the part. With `turned` the part is turned
+    /// and scaled, not moved.
+    pub(super) fn begin(&self, reach: &Reach, from: DVec3, turned: bool) -> Carried {
+        let corners = reach.in_object_space().corners();
         let place = if turned { without_shift(self.node_from_part) } else { self.node_from_part };
         let longer = stretch(&self.node_from_part.matrix3);
         Carried {
@@ -47,7 +49,7 @@ impl Hung<'_> {
 
     /// World from whatever the root hangs on.
     fn world_from_root(&self) -> DAffine3 {
-        self.chain.last().map_or(DAffine3::IDENTITY, |root| root.world_from_root)
+        self.world_from_tree * self.chain.last().map_or(DAffine3::IDENTITY, |root| root.world_from_root)
     }
 }
 

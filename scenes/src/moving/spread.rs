@@ -127,6 +127,34 @@ fn vectors(track: Option<&Track<DVec3>>, otherwise: DVec3, span: Span) -> (DVec3
     (min.abs().max(max.abs()), (max - middle).max(middle - min))
 }
 
+/// Returns the smallest and the largest weight within a span.
+pub(super) fn weights(track: &Track<f64>, span: Span) -> [f64; 2] {
+    let controls = match track.between(span.from, span.until) {
+        Between::Held(value) => return [value; 2],
+        Between::Linear { ends: [a, b], t } => t.map(|t| a * (1.0 - t) + b * t).to_vec(),
+        Between::Cubic { terms, length, t } => part(bezier(terms.map(DVec4::splat), length), t).map(|at| at.x).to_vec(),
+    };
+    let [least, most] = hull(controls.iter().map(|value| [*value; 2]));
+    let rounding = ROUNDING * least.abs().max(most.abs());
+    [least - rounding, most + rounding]
+}
+
+/// The range around ranges.
+fn hull(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], [low, high]| [least.min(low), most.max(high)])
+}
+
+impl Track<f64> {
+    /// Returns the smallest and the largest value of the track.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        let times = self.times();
+        let starts = std::iter::once(f64::NEG_INFINITY).chain(times.iter().copied());
+        let spans = starts.zip(times.iter().copied().chain([f64::INFINITY]));
+        let spans = spans.filter(|(from, until)| from < until).map(|(from, until)| Span { from, until });
+        hull(spans.map(|span| weights(self, span)))
+    }
+}
+
 /// How much longer a rotation makes a vector, and how far one of length 1 is from where the middle's puts it.
 fn turns(track: &Track<DQuat>, span: Span) -> (f64, f64) {
     let middle = track.at(span.middle());

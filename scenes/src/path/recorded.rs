@@ -8,6 +8,15 @@ use serde_json::{json, Value};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
+/// Farthest place of a recorded camera, metres: there a double still resolves 0.0001 m.
+const FARTHEST_M: f64 = 1e12;
+/// Narrowest field of view, degrees, and the range of near and far planes, metres: beyond them projections overflow in single
+/// precision.
+const NARROWEST_DEG: f64 = 1e-6;
+const PLANES_M: std::ops::RangeInclusive<f64> = 1e-18..=1e18;
+/// Latest time in the scene, seconds: 30 years, where a double still resolves a microsecond.
+const LATEST_S: f64 = 1e9;
+
 /// One frame of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RecordedShot {
@@ -132,26 +141,37 @@ fn parse(bytes: &[u8]) -> Result<Vec<RecordedShot>, String> {
 
 fn parse_frame(frame: &Value) -> Result<RecordedShot, String> {
     let position = DVec3::from_array(numbers(frame, "position")?);
+    if position.abs().max_element() > FARTHEST_M {
+        return Err(format!("`position` is more than {FARTHEST_M:e} m from the origin"));
+    }
     let rotation = DQuat::from_array(numbers(frame, "rotation")?);
     let length = rotation.length();
     if !(0.5..=2.0).contains(&length) {
         return Err(format!("`rotation` has length {length}, but a rotation is a quaternion of length 1"));
     }
     let [fov_y_deg] = numbers(frame, "fov_y_deg")?;
-    if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
-        return Err(format!("`fov_y_deg` is {fov_y_deg}, but must be between 0 and 180"));
+    if !(NARROWEST_DEG..180.0).contains(&fov_y_deg) {
+        let shown = crate::error::typed_number(fov_y_deg);
+        return Err(format!("`fov_y_deg` is {shown}, but must be between {NARROWEST_DEG:e} and 180"));
     }
     let [near] = numbers(frame, "near")?;
     let far = optional(frame, "far")?;
     if near <= 0.0 || far.is_some_and(|far| far <= near) {
         return Err("`near` must be above 0 and `far` above `near`".into());
     }
+    if !PLANES_M.contains(&near) || far.is_some_and(|far| !PLANES_M.contains(&far)) {
+        return Err(format!("`near` and `far` must be between {:e} and {:e}", PLANES_M.start(), PLANES_M.end()));
+    }
+    let seconds = optional(frame, "seconds")?;
+    if seconds.is_some_and(|seconds| seconds.abs() > LATEST_S) {
+        return Err(format!("`seconds` must be between -{LATEST_S:e} and {LATEST_S:e}"));
+    }
     // A quaternion that is already of length 1 up to rounding is kept bit for bit.
     let rotation = if (length - 1.0).abs() < 1e-12 { rotation } else { rotation.normalize() };
     Ok(RecordedShot {
         pose: Pose { position, rotation },
         projection: Projection::Perspective { fov_y: fov_y_deg.to_radians(), near, far },
-        seconds: optional(frame, "seconds")?,
+        seconds,
     })
 }
 

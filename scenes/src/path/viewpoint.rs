@@ -17,6 +17,8 @@ const FAR_OUTSIDE: f64 = 2.5;
 pub(super) struct Viewpoint {
     pub pose: Pose,
     pub projection: Projection,
+    /// Width over height of the rectangle that the camera was made for, if it was made for one.
+    pub aspect: Option<f64>,
     /// Far outside: where `closing-in` starts.
     pub outside: DVec3,
     /// What `closing-in` looks at on its way.
@@ -46,6 +48,7 @@ impl Viewpoint {
                 Viewpoint {
                     pose: camera.pose,
                     projection: camera.projection,
+                    aspect: camera.aspect,
                     outside: start,
                     focus: camera.pose.position + forward * (0.25 * radius),
                     reach: radius,
@@ -58,7 +61,15 @@ impl Viewpoint {
 
     /// A viewpoint of which only the pose and the projection are used.
     pub(super) fn fixed(pose: Pose, projection: Projection) -> Self {
-        Viewpoint { pose, projection, outside: pose.position, focus: pose.position, reach: 1.0, clearance: 1.0 }
+        Viewpoint {
+            pose,
+            projection,
+            aspect: None,
+            outside: pose.position,
+            focus: pose.position,
+            reach: 1.0,
+            clearance: 1.0,
+        }
     }
 
     fn outside(bounds: &Aabb, radius: f64) -> Self {
@@ -70,6 +81,7 @@ impl Viewpoint {
         let distance = fitting_distance(bounds, direction);
         let pose = Pose::looking_at(centre + direction * distance, centre);
         Viewpoint {
+            aspect: None,
             pose,
             projection: Projection::Perspective {
                 fov_y: FOV_Y,

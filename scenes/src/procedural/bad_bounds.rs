@@ -60,6 +60,7 @@ fn make(options: &SceneOptions, name: &str, bad: bool) -> Scene {
         name: "street".into(),
         pose: Pose::looking_at(ends[0], ends[1]),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near: 0.1, far: Some(8.0 * (length + depth)) },
+        aspect: None,
         node: None,
     }];
     scene.walk = Some(Walk { points: ends.to_vec(), length: 0.5 * length, clearance: 1.0 });

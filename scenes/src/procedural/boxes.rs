@@ -43,6 +43,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         name: "front".into(),
         pose: Pose::looking_at(eye, DVec3::new(0.0, 0.25 * side, 0.0)),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near: 0.1, far: Some(20.0 * side) },
+        aspect: None,
         node: None,
     }];
     scene
@@ -52,7 +53,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
 fn shape(random: &mut Random, body: usize) -> DMat3 {
     let size = random.range(0.3, 1.5);
     let mut scale = DVec3::splat(size);
-    if body % 4 == 0 {
+    if body.is_multiple_of(4) {
         scale *= DVec3::new(random.range(0.2, 2.0), random.range(0.2, 2.0), random.range(0.2, 2.0));
     }
     if body % 10 == 3 {

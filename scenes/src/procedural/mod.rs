@@ -9,6 +9,7 @@ mod factory;
 mod fantasy;
 mod forest;
 mod furniture;
+mod jellyfish;
 mod lane;
 mod monsters;
 mod moving_boxes;
@@ -165,6 +166,13 @@ pub const SCENES: &[Entry] = &[
         make: moving_boxes::make,
     },
     Entry {
+        name: "jellyfish",
+        alias: "",
+        about: "bells that morph targets squeeze, stretch and dent, a third of them on skeletons too, among walls that hide some: 271 objects",
+        by_detail: false,
+        make: jellyfish::make,
+    },
+    Entry {
         name: "tentacles",
         alias: "",
         about: "240 swaying columns, bent by skeletons, among walls",
@@ -278,7 +286,13 @@ fn posed(at: DVec3, angle: f64, size: DVec3) -> DAffine3 {
 
 /// How many objects a scene of `standard` objects has at a scale; not fewer than `least`.
 fn count(standard: usize, scale: f64, least: usize) -> usize {
-    ((standard as f64 * scale).round() as usize).clamp(least, crate::check::MOST_OBJECTS)
+    let (wanted, most) = ((standard as f64 * scale).round() as usize, crate::check::MOST_OBJECTS);
+    if wanted > most {
+        tracing::warn!(
+            "scale {scale} asks for {wanted} objects; the scene is made with {most}, the most that there can be"
+        );
+    }
+    wanted.clamp(least, most)
 }
 
 /// A camera of 60 degrees that looks along the first part of a walk.
@@ -287,6 +301,7 @@ fn camera(name: &str, walk: &Walk, near: f64, far: f64) -> Camera {
         name: name.into(),
         pose: Pose::looking_at(walk.points[0], walk.points[1]),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near, far: Some(far) },
+        aspect: None,
         node: None,
     }
 }

@@ -70,6 +70,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         // From beside one wall, past the middle of the room, to the doorway to the corridor.
         pose: Pose::looking_at(walk.points[0] - DVec3::new(2.3, 0.0, 0.4), walk.points[0] + DVec3::new(0.6, -0.3, 2.4)),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near: 0.05, far: Some(500.0) },
+        aspect: None,
         node: None,
     }];
     scene.walk = Some(walk);

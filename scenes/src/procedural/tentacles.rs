@@ -6,7 +6,8 @@ use super::{shade, sized, Assembly, SceneOptions};
 use crate::animation::{AnimatedNode, Attachment, Interpolation, Local, Motion, NodeAnimation, Track};
 use crate::camera::{Camera, Pose, Projection};
 use crate::model::{Mesh, Scene, Topology};
-use crate::skin::{weights_of_sum_one, RestVertex, Skin};
+use crate::morph::Deformed;
+use crate::skin::{weights_of_sum_one, RestVertex, Skin, JOINTS_A_VERTEX};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use std::f32::consts::TAU;
 
@@ -37,18 +38,7 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let mut random = Random::new(options.seed, 2);
     let mut assembly = Assembly::new("tentacles");
     let side = 20.0 * (count as f64 / TENTACLES).sqrt();
-    let somewhere = |random: &mut Random| DVec3::new(random.range(-0.6, 0.6), 0.0, random.range(-1.2, 0.4)) * side;
-    let cube = assembly.built("wall", Default::default(), |parts: &mut Parts| parts.cuboid([-0.5; 3], [0.5; 3]));
-    let ground = sized(DVec3::new(0.0, -0.5, 0.0), DVec3::new(8.0 * side, 1.0, 8.0 * side));
-    assembly.place(cube, [0.4, 0.42, 0.4], ground);
-    for _ in 0..count / 2 {
-        let size = DVec3::new(random.range(2.0, 4.5), random.range(1.5, 3.0), 0.3);
-        let at = somewhere(&mut random) + DVec3::Y * 0.5 * size.y;
-        let place = DAffine3 { matrix3: super::quarter_turns(random.below(4) as i32), translation: at }
-            * DAffine3::from_scale(size);
-        let colour = shade(&mut random, [0.65, 0.5, 0.4], 0.2);
-        assembly.place(cube, colour, place);
-    }
+    among_walls(&mut assembly, &mut random, count / 2, side);
     let rest = rest();
     let (mut nodes, mut attachments) = (Vec::new(), Vec::new());
     for tentacle in 0..count {
@@ -57,8 +47,8 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         let colour = random.pick(&[[0.7, 0.3, 0.45], [0.35, 0.6, 0.5], [0.45, 0.4, 0.7], [0.75, 0.65, 0.3]]);
         let colour = shade(&mut random, colour, 0.2);
         assembly.place(mesh, colour, DAffine3::IDENTITY);
-        attachments.push(Attachment { object, node: nodes.len(), node_from_object: DAffine3::IDENTITY });
-        let at = somewhere(&mut random);
+        attachments.push(Attachment::new(object, nodes.len()));
+        let at = somewhere(&mut random, side);
         skeleton(&mut random, tentacle, at, &mut nodes);
     }
     let mut scene = assembly.scene;
@@ -66,6 +56,40 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
     let animation = NodeAnimation::new(nodes, attachments).expect("parents come before their children");
     let skins = (0..count).map(|tentacle| skin(&animation, tentacle * JOINTS));
     scene.skins = skins.collect();
+    set_in_motion(&mut scene, animation);
+    let deformed = |tentacle: usize| Deformed {
+        mesh: scene.objects[first + tentacle].mesh,
+        skin: Some(tentacle as u32),
+        rest: rest.clone(),
+        targets: Vec::new(),
+    };
+    scene.deform((0..count).map(deformed).collect()).expect("each tentacle hangs on its own lowest joint");
+    scene.cameras = vec![camera(side)];
+    scene
+}
+
+/// A place on a ground of this size.
+fn somewhere(random: &mut Random, side: f64) -> DVec3 {
+    DVec3::new(random.range(-0.6, 0.6), 0.0, random.range(-1.2, 0.4)) * side
+}
+
+/// The ground, and walls on it.
+pub(super) fn among_walls(assembly: &mut Assembly, random: &mut Random, walls: usize, side: f64) {
+    let cube = assembly.built("wall", Default::default(), |parts: &mut Parts| parts.cuboid([-0.5; 3], [0.5; 3]));
+    let ground = sized(DVec3::new(0.0, -0.5, 0.0), DVec3::new(8.0 * side, 1.0, 8.0 * side));
+    assembly.place(cube, [0.4, 0.42, 0.4], ground);
+    for _ in 0..walls {
+        let size = DVec3::new(random.range(2.0, 4.5), random.range(1.5, 3.0), 0.3);
+        let at = somewhere(random, side) + DVec3::Y * 0.5 * size.y;
+        let place = DAffine3 { matrix3: super::quarter_turns(random.below(4) as i32), translation: at }
+            * DAffine3::from_scale(size);
+        let colour = shade(random, [0.65, 0.5, 0.4], 0.2);
+        assembly.place(cube, colour, place);
+    }
+}
+
+/// Sets a scene in motion. Its objects take their places of time 0.
+pub(super) fn set_in_motion(scene: &mut Scene, animation: NodeAnimation) {
     scene.motion = Motion::Nodes(animation);
     let mut transforms = Vec::new();
     scene.motion.transforms_at(0.0, &mut transforms);
@@ -73,18 +97,18 @@ pub(super) fn make(options: &SceneOptions) -> Scene {
         let object = &mut scene.objects[object as usize];
         (object.world_from_object, object.dynamic) = (transform, true);
     }
-    for tentacle in 0..count {
-        let object = (first + tentacle) as u32;
-        scene.bend(object, tentacle as u32, rest.clone()).expect("each tentacle hangs on its own lowest joint");
-    }
+}
+
+/// A camera in front of the walls.
+pub(super) fn camera(side: f64) -> Camera {
     let eye = DVec3::new(0.1 * side, 1.7, 0.75 * side);
-    scene.cameras = vec![Camera {
+    Camera {
         name: "front".into(),
         pose: Pose::looking_at(eye, DVec3::new(0.0, 1.2, 0.0)),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near: 0.1, far: Some(20.0 * side) },
+        aspect: None,
         node: None,
-    }];
-    scene
+    }
 }
 
 /// A column around +y, thinner towards its tip. Each ring is carried by the joint below it and the one above, by how far it is from them.
@@ -97,20 +121,27 @@ fn rest() -> Vec<RestVertex> {
         // Fully the lower joint's in the middle of its bone: what bends is the half of a bone on either side of a joint.
         let part = along.fract();
         let weights = match ring == rings || lower == upper {
-            true => [1.0, 0.0, 0.0, 0.0],
-            false => weights_of_sum_one([1.0 - 0.5 * part, 0.5 * part, 0.0, 0.0]),
+            true => shares([1.0, 0.0]),
+            false => weights_of_sum_one(shares([1.0 - 0.5 * part, 0.5 * part])),
         };
         (0..SIDES).map(move |side| {
             let angle = side as f32 / SIDES as f32 * TAU;
             let normal = Vec3::new(angle.cos(), 0.0, -angle.sin());
             let position = normal * radius + Vec3::Y * (along * BONE as f32);
-            RestVertex { position, normal, joints: [lower as u32, upper as u32, 0, 0], weights }
+            RestVertex { position, normal, joints: shares([lower as u32, upper as u32]), weights }
         })
     };
     let mut vertices: Vec<RestVertex> = (0..=rings).flat_map(ring).collect();
     let tip = vertices[vertices.len() - 1];
     vertices.push(RestVertex { position: Vec3::Y * (tip.position.y + 0.1), normal: Vec3::Y, ..tip });
     vertices
+}
+
+/// The joints of a vertex, or their weights, of which two are used.
+pub(super) fn shares<T: Copy + Default>([lower, upper]: [T; 2]) -> [T; JOINTS_A_VERTEX] {
+    let mut all = [T::default(); JOINTS_A_VERTEX];
+    (all[0], all[1]) = (lower, upper);
+    all
 }
 
 /// The mesh of these vertices.

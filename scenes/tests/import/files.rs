@@ -1,6 +1,6 @@
 //! Laws of containers, data files and versions.
 
-use crate::model::{assert_says, error, import, Model};
+use crate::model::{assert_says, error, import, warnings, Model};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -84,7 +84,9 @@ fn a_glb_cut_anywhere_is_refused() {
 fn wrong_lengths_in_a_glb_are_refused() {
     let file = Model::triangle().glb();
     let with = |at: usize, word: u32| [&file[..at], &word.to_le_bytes(), &file[at + 4..]].concat();
-    assert_says(&error(&with(8, 77)), "its header says 77 bytes");
+    let short = error(&with(8, 77));
+    assert_says(&short, "its header says 77 bytes");
+    assert!(!short.contains("cut off"), "there is more, not less: {short}");
     // Less than the header itself: the gltf crate subtracts without looking.
     assert_says(&error(&with(8, 3)), "its header says 3 bytes");
     assert_says(&error(b"glTF\x02\0\0\0\x0c\0\0\0"), "it ends at byte 12, inside a header");
@@ -119,18 +121,82 @@ fn other_versions_and_unknown_extensions_are_named() {
     let mut model = Model::triangle();
     model.json["asset"] = json!({ "version": "1.0" });
     assert_says(&model.error(), "glTF version 1.0 is not supported; convert");
-    model.json["asset"] = json!({ "version": "2.0", "minVersion": "2.1" });
-    assert_says(&model.error(), "glTF version '2.1' is not supported");
+    for (version, least) in [("2.0", "2.1"), ("2.1", "2.1"), ("2.1", "3.0"), ("2.0", "x")] {
+        model.json["asset"] = json!({ "version": version, "minVersion": least });
+        assert_says(&model.error(), &format!("its 'minVersion', glTF '{least}', is not supported"));
+    }
+    for version in ["3.0", "20", "2x", "", "two"] {
+        model.json["asset"] = json!({ "version": version });
+        assert_says(&model.error(), &format!("glTF version '{version}' is not supported"));
+    }
     model.json["asset"] = json!({});
     assert_says(&model.error(), "'asset' has no 'version'");
     model.json["asset"] = json!({ "version": "2.0" });
-    for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_technique_webgl", "ACME_spheres"] {
+    for name in ["KHR_animation_pointer", "KHR_materials_acme", "KHR_technique_webgl", "ACME_spheres"] {
         model.json["extensionsRequired"] = json!([name]);
         assert_says(&model.error(), &format!("the required extension {name} is not supported; "));
     }
     model.json["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"]);
     model.json["extensionsUsed"] = json!(["ACME_spheres"]);
     assert_eq!(model.scene().objects.len(), 1);
+}
+
+/// `asset.version` 2.1 was refused. Without `minVersion` only the major version counts (glTF 2.0, 3.2).
+#[test]
+fn every_minor_version_is_read() {
+    let mut model = Model::triangle();
+    for asset in [
+        json!({ "version": "2.1" }),
+        json!({ "version": "2.17" }),
+        json!({ "version": "2.4294967296" }),
+        json!({ "version": "2" }),
+        json!({ "version": "2.1", "minVersion": "2.0" }),
+        json!({ "version": "2.0", "minVersion": "1.0" }),
+    ] {
+        model.json["asset"] = asset.clone();
+        assert_eq!(model.scene().objects.len(), 1, "{asset}");
+    }
+}
+
+/// A .glb with bytes behind its declared length was refused, with the question whether it was cut off.
+#[test]
+fn bytes_behind_a_glb_are_ignored_with_a_warning() {
+    let file = Model::triangle().glb();
+    for behind in [&b"\0"[..], b"\0\0\0\0", b"\r\n", &[7; 1000]] {
+        let longer = [&file, behind].concat();
+        let (scene, warnings) = warnings(|| import(&longer).expect("a legal file"));
+        assert_eq!(scene.meshes, Model::triangle().scene().meshes);
+        let expected = format!("has {} bytes behind the {}", behind.len(), file.len());
+        assert!(warnings.len() == 1 && warnings[0].contains(&expected), "{warnings:?}");
+    }
+    assert!(warnings(|| import(&file).expect("a legal file")).1.is_empty());
+}
+
+#[test]
+fn chunks_may_be_padded_in_any_way() {
+    let model = Model::triangle();
+    let file = |json: &[u8], said: [usize; 2], data: &[u8], after: &[u8]| {
+        let word = |number: usize| (number as u32).to_le_bytes();
+        let chunks = [&word(said[0]), &b"JSON"[..], json, &word(said[1]), b"BIN\0", data, after].concat();
+        [&b"glTF"[..], &word(2), &word(12 + chunks.len()), &chunks].concat()
+    };
+    let mut json = model.json.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4) + 1, b' ');
+    let odd = json.clone();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let data = [&model.binary[..], &[0, 0, 0]].concat();
+    let nulls = [model.json.to_string().as_bytes(), &[0; 8]].concat();
+    let count = data.len();
+    for (name, file) in [
+        ("data is longer than its buffer by 3 bytes", file(&json, [json.len(), count], &data, b"")),
+        ("no padding at all", file(&odd, [odd.len(), count], &data, b"")),
+        ("JSON that is padded with zeros", file(&nulls, [nulls.len(), count], &data, b"")),
+        ("padding that lengths leave out", file(&json, [odd.len(), count - 3], &data, b"")),
+        ("padding behind the last chunk", file(&json, [json.len(), count], &data, &[0; 5])),
+        ("a third chunk that is cut off", file(&json, [json.len(), count], &data, b"\xff\0\0\0ACME")),
+    ] {
+        assert_eq!(import(&file).unwrap_or_else(|error| panic!("{name}: {error}")).objects.len(), 1, "{name}");
+    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Laws of materials: what of them decides where a surface leaves fragments, and its colours.
 
+use crate::corpus::png;
 use crate::model::{Model, U8};
 use glam::Vec2;
-use image::{ImageFormat, Rgb, RgbImage, Rgba, RgbaImage};
+use image::{ImageFormat, Rgb, RgbImage};
 use scenes::{Scene, Wrap};
 use serde_json::{json, Value};
 use std::io::Cursor;
@@ -24,13 +25,6 @@ fn textured(material: Value, picture: &[u8]) -> Model {
 
 fn textured_material() -> Value {
     json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } })
-}
-
-pub fn png() -> Vec<u8> {
-    let picture = RgbaImage::from_fn(3, 2, |x, y| Rgba([x as u8 * 10, y as u8 * 20, 7, 100 * y as u8]));
-    let mut file = Cursor::new(Vec::new());
-    picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
-    file.into_inner()
 }
 
 /// Drawn, but without its texture.
@@ -84,13 +78,16 @@ fn vertex_colours_of_every_format_are_read() {
         model.scene().meshes.remove(0).colours
     };
     let three = with(|model| model.floats("VEC3", &[0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 2.0, -1.0, 1.0]));
-    assert_eq!(three, [[0, 128, 255, 255], [0, 0, 0, 255], [255, 0, 255, 255]]);
+    assert_eq!(three, [[0.0, 0.5, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 1.0, 1.0]]);
     let bytes = with(|model| {
         let accessor = model.accessor(&[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], U8, "VEC4", 3);
         model.json["accessors"][accessor]["normalized"] = true.into();
         accessor
     });
-    assert_eq!(bytes, [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]]);
+    assert_eq!(
+        bytes,
+        [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]].map(|colour| colour.map(|byte| byte as f32 / 255.0))
+    );
     let few = with(|model| model.floats("VEC3", &[0.0, 0.5, 1.0]));
     assert!(few.is_empty(), "too few to be of use");
 }

@@ -49,6 +49,33 @@ impl Model {
         self.push("bufferViews", json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() }))
     }
 
+    /// Adds a buffer view that a meshopt extension compresses, with a mode and a filter. Elements are given by count and stride.
+    pub fn compressed_view(
+        &mut self,
+        extension: &str,
+        mode: &str,
+        filter: &str,
+        (count, stride): (usize, usize),
+        stream: &[u8],
+    ) -> usize {
+        let view = self.view(stream);
+        let offset = self.json["bufferViews"][view]["byteOffset"].clone();
+        let buffers = self.json["buffers"].as_array_mut().expect("a list");
+        buffers.resize(2, json!({ "byteLength": 0 }));
+        let fallback = &mut buffers[1];
+        let start = fallback["byteLength"].as_u64().unwrap_or(0);
+        *fallback =
+            json!({ "byteLength": start + (count * stride) as u64, "extensions": { extension: { "fallback": true } } });
+        let compressed = json!({ "buffer": 0, "byteOffset": offset, "byteLength": stream.len(), "byteStride": stride,
+            "count": count, "mode": mode, "filter": filter });
+        self.json["bufferViews"][view] = json!({ "buffer": 1, "byteOffset": start, "byteLength": count * stride,
+            "extensions": { extension: compressed } });
+        if mode == "ATTRIBUTES" {
+            self.json["bufferViews"][view]["byteStride"] = stride.into();
+        }
+        view
+    }
+
     pub fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
         let view = self.view(bytes);
         self.push("accessors", json!({ "bufferView": view, "componentType": component, "type": kind, "count": count }))
@@ -90,10 +117,13 @@ impl Model {
     }
 
     pub fn glb(&self) -> Vec<u8> {
-        let mut json = self.json.to_string().into_bytes();
-        json.resize(json.len().next_multiple_of(4), b' ');
         let mut binary = self.binary.clone();
         binary.resize(binary.len().next_multiple_of(4), 0);
+        if !binary.is_empty() {
+            return joined(&self.json.to_string(), &binary);
+        }
+        let mut json = self.json.to_string().into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + json.len() + 8 + binary.len();
         let word = |number: usize| (number as u32).to_le_bytes();
         [
@@ -121,6 +151,67 @@ impl Model {
     pub fn error(&self) -> String {
         error(&self.glb())
     }
+}
+
+/// Splits a .glb into JSON and data; a .gltf has no data.
+pub fn parts(file: &[u8]) -> (String, &[u8]) {
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
+    if !file.starts_with(b"glTF") {
+        return (text(file), &[]);
+    }
+    let length = u32::from_le_bytes(file[12..16].try_into().expect("four bytes")) as usize;
+    (text(&file[20..20 + length]), &file[20 + length + 8..])
+}
+
+/// Joins JSON and data to a .glb; without data, to a .gltf.
+pub fn joined(json: &str, data: &[u8]) -> Vec<u8> {
+    if data.is_empty() {
+        return json.as_bytes().to_vec();
+    }
+    let mut json = json.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = 12 + 8 + json.len() + 8 + data.len();
+    let word = |number: usize| (number as u32).to_le_bytes();
+    let header = [&b"glTF"[..], &word(2), &word(length), &word(json.len()), b"JSON"].concat();
+    [&header, &json, &word(data.len())[..], b"BIN\0", data].concat()
+}
+
+/// Returns the text of each warning of a call.
+pub fn warnings<T>(call: impl FnOnce() -> T) -> (T, Vec<String>) {
+    let heard = Heard::default();
+    let lines = heard.0.clone();
+    let result = tracing::subscriber::with_default(heard, call);
+    let lines = lines.lock().expect("no thread has panicked").clone();
+    (result, lines)
+}
+
+#[derive(Clone, Default)]
+struct Heard(std::sync::Arc<std::sync::Mutex<Vec<String>>>);
+
+impl tracing::Subscriber for Heard {
+    fn enabled(&self, metadata: &tracing::Metadata<'_>) -> bool {
+        *metadata.level() <= tracing::Level::WARN
+    }
+    fn new_span(&self, _: &tracing::span::Attributes<'_>) -> tracing::span::Id {
+        tracing::span::Id::from_u64(1)
+    }
+    fn record(&self, _: &tracing::span::Id, _: &tracing::span::Record<'_>) {}
+    fn record_follows_from(&self, _: &tracing::span::Id, _: &tracing::span::Id) {}
+    fn event(&self, event: &tracing::Event<'_>) {
+        struct Text(String);
+        impl tracing::field::Visit for Text {
+            fn record_debug(&mut self, field: &tracing::field::Field, value: &dyn std::fmt::Debug) {
+                if field.name() == "message" {
+                    self.0 = format!("{value:?}");
+                }
+            }
+        }
+        let mut text = Text(String::new());
+        event.record(&mut text);
+        self.0.lock().expect("no thread has panicked").push(text.0);
+    }
+    fn enter(&self, _: &tracing::span::Id) {}
+    fn exit(&self, _: &tracing::span::Id) {}
 }
 
 pub fn import(file: &[u8]) -> Result<Scene, SceneError> {

@@ -163,7 +163,7 @@ fn a_list_of_nodes_must_be_a_tree_and_objects_hang_once() {
         rotation: None,
         scale: None,
     };
-    let on = |object, node| Attachment { object, node, node_from_object: DAffine3::IDENTITY };
+    let on = |object, node| Attachment::new(object, node);
     let refused = |nodes, objects| NodeAnimation::new(nodes, objects).map(|_| ()).unwrap_err();
     assert_says(&refused(vec![node(Some(0))], vec![]), "node 0 comes before its parent");
     assert_says(&refused(vec![node(None)], vec![on(4, 1)]), "object 4 hangs on node 1 of 1");
@@ -193,4 +193,28 @@ fn orbits_turn_about_their_axis_and_bob() {
     assert!(places[1].1.translation.abs_diff_eq(DVec3::new(1.0, 1.0, -2.0), 1e-12), "{}", places[1].1);
     assert_eq!(places[0].1, base);
     assert_eq!((motion.duration_s(), motion.dynamic_objects()), ((0.0, 2.0), vec![1, 5]));
+}
+
+/// Each channel has a copy of the values of its sampler, and any number of channels may use one sampler.
+#[test]
+fn a_small_file_cannot_ask_for_many_keys() {
+    let with = |nodes: usize, keys: u64| {
+        let mut model = Model::triangle();
+        let times = model.bare_accessor(json!({ "componentType": 5126, "type": "SCALAR", "count": keys }));
+        let places = model.bare_accessor(json!({ "componentType": 5126, "type": "VEC3", "count": keys }));
+        for node in 0..nodes {
+            model.node(json!({ "mesh": 0 }), true);
+            model.channel(node, "translation", "LINEAR", times, places);
+        }
+        for channel in model.json["animations"][0]["channels"].as_array_mut().expect("a list") {
+            channel["sampler"] = 0.into();
+        }
+        model
+    };
+    let Motion::Nodes(nodes) = with(40, 1 << 10).scene().motion else { panic!("it moves") };
+    assert_eq!(nodes.objects().len(), 40);
+    // A scene that is not refused is too large to print.
+    let message = with(40, 1 << 18).import().map(drop).expect_err("too many keys").to_string();
+    assert_says(&message, "animation 0, channel 1");
+    assert_says(&message, "too many for its size");
 }

@@ -1,77 +1,21 @@
 //! The law that nothing in a file makes the import panic.
 
-use crate::materials::png;
-use crate::model::{import, Model, U16, U8};
+use crate::corpus;
+use crate::model::{import, joined, parts};
 use proptest::prelude::*;
-use serde_json::json;
+use std::sync::LazyLock;
 
-/// A file that uses most of what the import reads.
-fn rich() -> Model {
-    let mut model = Model::triangle();
-    let indices = model.accessor(&[0, 0, 1, 0, 2, 0], U16, "SCALAR", 3);
-    let deltas = model.floats("VEC3", &[0.5; 9]);
-    let (at, value) = (model.view(&[1]), model.view(&[0; 12]));
-    let model_coordinates = model.floats("VEC2", &[0.0, 0.0, 1.0, 0.0, 0.25, 0.75]);
-    let model_colours = model.floats("VEC4", &[0.5; 12]);
-    model.json["accessors"][deltas]["sparse"] = json!({ "count": 1, "indices": { "bufferView": at, "componentType": 5121 }, "values": { "bufferView": value } });
-    let primitive = &mut model.json["meshes"][0]["primitives"][0];
-    primitive["indices"] = indices.into();
-    primitive["attributes"]["NORMAL"] = deltas.into();
-    primitive["targets"] = json!([{ "POSITION": deltas }]);
-    primitive["mode"] = 5.into();
-    primitive["material"] = 0.into();
-    primitive["attributes"]["TEXCOORD_0"] = model_coordinates.into();
-    primitive["attributes"]["COLOR_0"] = model_colours.into();
-    let mut glass = primitive.clone();
-    glass["material"] = 1.into();
-    model.json["meshes"][0]["primitives"].as_array_mut().expect("a list").push(glass);
-    model.json["meshes"][0]["weights"] = json!([0.5]);
-    let transform = json!({ "offset": [0.5, 0.25], "rotation": 0.5, "scale": [2, 4] });
-    let texture = json!({ "index": 0, "texCoord": 0, "extensions": { "KHR_texture_transform": transform } });
-    model.json["materials"] = json!([
-        { "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
-            "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1], "baseColorTexture": texture } },
-        { "alphaMode": "BLEND", "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": texture } },
-    ]);
-    model.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
-    model.json["samplers"] = json!([{ "wrapS": 33_071, "wrapT": 33_648 }]);
-    let picture = model.view(&png());
-    model.json["images"] = json!([{ "bufferView": picture, "mimeType": "image/png" }]);
-    model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
-    let places = model.floats("VEC3", &[1., 2., 3., 4., 5., 6.]);
-    let instancing = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": places } } });
-    model.json["nodes"] = json!([
-        { "children": [1, 2], "rotation": [0, 0, 0, 1] },
-        { "mesh": 0, "extensions": instancing },
-        { "camera": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] },
-        { "mesh": 0, "skin": 0 },
-    ]);
-    model.json["scenes"][0]["nodes"] = json!([0, 3]);
-    let identity = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
-    let inverse_binds = model.floats("MAT4", &[identity, identity].concat());
-    model.json["skins"] = json!([{ "joints": [2, 0], "inverseBindMatrices": inverse_binds }]);
-    let joints = model.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0], U8, "VEC4", 3);
-    let weights = model.floats("VEC4", &[0.5, 0.5, 0., 0., 1., 0., 0., 0., 1., 0., 0., 0.]);
-    for primitive in model.json["meshes"][0]["primitives"].as_array_mut().expect("a list") {
-        primitive["attributes"]["JOINTS_0"] = joints.into();
-        primitive["attributes"]["WEIGHTS_0"] = weights.into();
-    }
-    let (input, output) = (model.floats("SCALAR", &[0., 1.]), model.floats("VEC4", &[0., 0., 0., 1., 0., 1., 0., 0.]));
-    model.channel(0, "rotation", "LINEAR", input, output);
-    model
-}
+static SEEDS: LazyLock<Vec<(&str, Vec<u8>)>> = LazyLock::new(corpus::all);
 
 fn check(file: &[u8]) {
     match import(file) {
         Ok(scene) => {
             let mut places = Vec::new();
             scene.motion.transforms_at(0.3, &mut places);
-            let joints = scene.joints_at(0.3);
-            for skinned in &scene.skinned {
-                assert!(skinned
-                    .rest
-                    .iter()
-                    .all(|vertex| vertex.joints.iter().all(|joint| (*joint as usize) < joints.of(skinned.skin).len())));
+            assert!(scene.check().is_ok());
+            let meshes = scene.meshes_at(0.3);
+            for deformed in &scene.deformed {
+                assert_eq!(meshes[deformed.mesh as usize].positions.len(), deformed.rest.len());
             }
             for object in &scene.objects {
                 assert!((object.mesh as usize) < scene.meshes.len() && object.world_from_object.is_finite());
@@ -93,12 +37,24 @@ fn check(file: &[u8]) {
     }
 }
 
+/// A refused seed would test nothing behind the refusal.
 #[test]
-fn the_file_to_mutate_is_legal() {
-    let scene = rich().scene();
+fn every_seed_is_legal_and_has_something_to_draw() {
+    for (name, file) in corpus::all() {
+        let scene = import(&file).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(!scene.objects.is_empty(), "{name}");
+        let textured = scene.objects.iter().any(|object| object.surface.texture.is_some());
+        assert_eq!(textured, name.starts_with("webp") || name == "rich", "{name}");
+        check(&file);
+    }
+}
+
+#[test]
+fn the_rich_seed_has_all_that_it_should() {
+    let scene = corpus::rich().scene();
     // Two places of a mesh of two materials, and a skin that bends it.
     assert_eq!((scene.objects.len(), scene.cameras.len(), scene.motion.dynamic_objects().len()), (6, 1, 6));
-    assert_eq!((scene.skins.len(), scene.skinned.len()), (1, 2));
+    assert_eq!((scene.skins.len(), scene.deformed.len()), (1, 4));
     let count = |of: fn(&scenes::Object) -> bool| scene.objects.iter().filter(|object| of(object)).count();
     let counts = (count(|o| o.masked), count(|o| o.translucent), count(|o| o.surface.texture.is_some()));
     assert_eq!(counts, (3, 3, 6), "masked, translucent, textured");
@@ -109,9 +65,10 @@ proptest! {
 
     #[test]
     fn no_changed_or_cut_byte_makes_it_panic(
+        seed in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..8), length in any::<prop::sample::Index>(), cut in prop::bool::weighted(0.1),
     ) {
-        let mut file = rich().glb();
+        let mut file = seed.get(&SEEDS).1.clone();
         for (at, byte) in changes {
             let at = at.index(file.len());
             file[at] = byte;
@@ -125,22 +82,20 @@ proptest! {
     /// Most changed bytes break the JSON; changed numbers reach what is behind it.
     #[test]
     fn no_changed_number_makes_it_panic(
+        seed in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![
             (0_u64..8).prop_map(|number| number.to_string()), (5119_u64..5128).prop_map(|number| number.to_string()),
             any::<u64>().prop_map(|number| number.to_string()), any::<f64>().prop_map(|number| format!("{number:e}")),
         ]), 1..4),
     ) {
-        let mut model = rich();
-        let mut json = model.json.to_string();
+        let (_, file) = seed.get(&SEEDS);
+        let (mut json, data) = parts(file);
         for (at, number) in changes {
             let bounds: Vec<(usize, usize)> = numbers(&json);
             let (start, end) = bounds[at.index(bounds.len())];
             json.replace_range(start..end, &number);
         }
-        if let Ok(json) = serde_json::from_str(&json) {
-            model.json = json;
-            check(&model.glb());
-        }
+        check(&joined(&json, data));
     }
 }
 

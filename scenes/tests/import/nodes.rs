@@ -1,6 +1,6 @@
 //! Laws of the node tree, instances and cameras.
 
-use crate::model::{assert_says, Model, FLOAT};
+use crate::model::{assert_says, warnings, Model, FLOAT};
 use glam::{DMat3, DQuat, DVec3};
 use scenes::Projection;
 use serde_json::json;
@@ -178,7 +178,7 @@ fn what_leaves_the_range_of_f32_is_refused() {
 fn cameras_keep_their_place_and_lens() {
     let mut model = Model::new();
     model.json["cameras"] = json!([
-        { "name": "eye", "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } },
+        { "name": "eye", "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1, "aspectRatio": 4 } },
         { "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 2.5, "znear": 0, "zfar": 10 } },
     ]);
     model.node(json!({ "camera": 0, "translation": [1, 2, 3], "rotation": [0, 1, 0, 0], "scale": [3, 3, 3] }), true);
@@ -188,7 +188,14 @@ fn cameras_keep_their_place_and_lens() {
     assert_eq!(cameras[0].pose.position, DVec3::new(1.0, 2.0, 3.0));
     assert!(cameras[0].pose.rotation.dot(DQuat::from_rotation_y(std::f64::consts::PI)).abs() > 1.0 - 1e-12);
     assert_eq!(cameras[1].projection, Projection::Orthographic { half_height: 2.5, near: 0.0, far: 10.0 });
+    assert_eq!((cameras[0].aspect, cameras[1].aspect), (Some(4.0), Some(0.4)));
     assert_eq!((cameras[0].name.as_str(), cameras[1].name.as_str()), ("eye", "map"));
+    // No picture is made for such a rectangle.
+    for wild in [1e300, 1e-300] {
+        let mut wide = Model { json: model.json.clone(), binary: model.binary.clone() };
+        wide.json["cameras"][0]["perspective"]["aspectRatio"] = wild.into();
+        assert_eq!(wide.scene().cameras[0].aspect, None);
+    }
     for (place, value) in [("yfov", 4.0), ("yfov", 0.0), ("znear", 0.0), ("zfar", 0.05)] {
         let mut model = Model { json: model.json.clone(), binary: Vec::new() };
         model.json["cameras"][0]["perspective"][place] = value.into();
@@ -203,5 +210,37 @@ fn a_mesh_without_positions_draws_nothing() {
     assert!(model.scene().objects.is_empty());
     model.bare_accessor(json!({ "componentType": FLOAT, "type": "VEC3", "count": 3 }));
     model.json["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 1 });
-    assert_says(&model.error(), "its POSITION has no data");
+    let (scene, warnings) = warnings(|| model.scene());
+    assert_eq!(scene.meshes[0].positions, [glam::Vec3::ZERO; 3], "an accessor without bytes is zeros");
+    assert!(warnings.iter().any(|line| line.contains("POSITION has no data")), "{warnings:?}");
+}
+
+/// "The view matrix is derived from the global transform of the node containing the camera with the scaling ignored" (3.10.2).
+#[test]
+fn the_scale_of_a_cameras_own_node_changes_nothing() {
+    let pose = |scale: [f64; 3], animated: bool| {
+        let mut model = Model::new();
+        model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } }]);
+        let place = json!({ "camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.6, 0, 0.8], "scale": scale });
+        let node = model.node(place, true);
+        if animated {
+            let input = model.floats("SCALAR", &[0.0, 1.0]);
+            let keys: Vec<f32> = scale.iter().chain(&[1.0, 1.0, 1.0]).map(|part| *part as f32).collect();
+            let output = model.floats("VEC3", &keys);
+            model.channel(node, "scale", "LINEAR", input, output);
+        }
+        let scene = model.scene();
+        match scene.cameras[0].node {
+            Some(node) => scene.motion.camera_pose_at(node, 0.25).expect("an animated camera"),
+            None => scene.cameras[0].pose,
+        }
+    };
+    let expected = pose([1.0; 3], false);
+    for scale in [[1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [-2.0, -2.0, -2.0], [0.0, 0.0, 0.0], [3.0, 0.5, 1.0]] {
+        for animated in [false, true] {
+            let found = pose(scale, animated);
+            assert_eq!(found.position, expected.position, "{scale:?}");
+            assert!(found.rotation.dot(expected.rotation).abs() > 1.0 - 1e-12, "{scale:?} {animated}");
+        }
+    }
 }

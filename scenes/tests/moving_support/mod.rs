@@ -49,7 +49,7 @@ fn interpolation() -> impl Strategy<Value = Interpolation> {
 }
 
 /// Key times, some of them equal; values and tangents for as many.
-fn track<T: scenes::animation::Interpolate + std::fmt::Debug>(
+pub fn track<T: scenes::animation::Interpolate + std::fmt::Debug>(
     value: impl Strategy<Value = T>,
     tangent: impl Strategy<Value = T>,
 ) -> impl Strategy<Value = Option<Track<T>>> {

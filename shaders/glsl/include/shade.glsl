@@ -10,7 +10,8 @@ layout(location = 1) in vec2 normal_snorm16;    // octahedral
 
 #ifdef DETAIL
 layout(location = 8) in vec2 coordinates;       // on the texture
-layout(location = 9) in uint tint;              // RGBA8, linear: what the colour is multiplied by
+layout(location = 9) in uint tint;              // RGB8, linear: the factor of the colour
+layout(location = 10) in float alpha;           // the factor of the material's alpha
 // By object.
 layout(set = 0, binding = 0, scalar) readonly buffer ObjectMaterials { uint items[]; } object_materials;
 layout(location = 2) out vec2 texture_at;
@@ -47,7 +48,7 @@ void main() {
     vec4 colour = unpackUnorm4x8(object.colour);
     shade = vec4(colour.rgb * (0.25 + 0.75 * lambert), colour.a);
 #ifdef DETAIL
-    shade *= unpackUnorm4x8(tint);
+    shade = vec4(shade.rgb * unpackUnorm4x8(tint).rgb, alpha);
     texture_at = coordinates;
     material = object_materials.items[gl_InstanceIndex];
 #endif

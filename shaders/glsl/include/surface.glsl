@@ -7,7 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "types.glsl"
 
-layout(location = 0) in vec4 shade;
+layout(location = 0) in vec4 shade;     // a: alpha of the vertices
 #ifdef PASS_ITEM
 layout(location = 1) flat in uint item;
 #endif
@@ -30,6 +30,12 @@ int wrapped(int texel, int size, uint mode) {
     return clamp(texel, 0, size - 1);
 }
 
+// Interpolates between two texels. Equal texels keep their value, which mix() may miss by a rounding.
+vec4 between(vec4 from, vec4 to, float t) {
+    precise vec4 part = from + (to - from) * t;
+    return part;
+}
+
 vec4 texture_colour(Material of, vec2 step_px) {
     vec2 size = vec2(of.width, of.height);
     float wanted = log2(max(max(step_px.x, step_px.y), 1.0)) + 0.5;
@@ -48,18 +54,20 @@ vec4 texture_colour(Material of, vec2 step_px) {
             int x = wrapped(int(corner.x) + column, texel_count.x, mode.x);
             ends[column] = unpackUnorm4x8(texels.items[first + uint(y * texel_count.x + x)]);
         }
-        rows[row] = mix(ends[0], ends[1], at.x - corner.x);
+        rows[row] = between(ends[0], ends[1], at.x - corner.x);
     }
-    return mix(rows[0], rows[1], at.y - corner.y);
+    return between(rows[0], rows[1], at.y - corner.y);
 }
 
-// The colour with its alpha.
+// The colour with its alpha. An alpha that is the same for all vertices is not interpolated: a device may round it below the cutoff.
 vec4 surface_colour() {
     Material of = materials.items[material];
     vec2 size = vec2(of.width, of.height);
     // Before anything differs between neighbours, which derivatives are taken over.
     vec2 step_px = vec2(length(dFdx(texture_at) * size), length(dFdy(texture_at) * size));
-    return of.levels == 0u ? shade : shade * texture_colour(of, step_px);
+    vec4 texel = of.levels == 0u ? vec4(1.0) : texture_colour(of, step_px);
+    float alpha = of.alpha_varies != 0u ? of.alpha * shade.a : of.alpha;
+    return vec4(shade.rgb * texel.rgb, alpha * texel.a);
 }
 
 // True if there is something, of masked objects.

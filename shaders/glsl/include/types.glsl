@@ -51,14 +51,14 @@ const uint WRAP_CLAMP = 2u;
 // Bits of Material.wrap for x; those for y follow.
 const uint WRAP_BITS = 2u;
 
-// Where a base colour texture lies among the texels, and where what it covers is not there.
+// Where a base colour texture lies among the texels, and where its surface has holes.
 struct Material {
     uint first_texel;   // of level 0; each level follows the one before, with half of its texels a side
-    uint width;
-    uint height;
-    uint levels;        // 0: no texture
-    uint wrap;          // WRAP_*, x in the lowest bits
-    float cutoff;
+    uint width, height; // of level 0, in texels
+    uint levels, wrap;  // levels: 0 for no texture; wrap: WRAP_*, x in the lowest bits
+    float alpha;        // alpha of the material, times that of the vertices if it is the same for the whole mesh
+    uint alpha_varies;  // 1 where the vertices of a mesh differ in alpha
+    float cutoff;       // The surface is there where alpha is at least this. Allows for the rounding of alpha.
 };
 
 // Where a mesh lies in the shared index and vertex buffers.

@@ -1,5 +1,5 @@
-// world/skin_vertices: puts each vertex that joints carry where the mean of their places puts it, and turns its normal (glTF 2.0, 3.7.3.3).
-// Bounds allow for what this rounds: scenes/src/moving/bent.rs counts the operations. Twin: culling/src/world/twin.rs
+// world/skin_vertices: displaces each vertex of a deformed mesh by morph targets, then bends it by the mean place of its joints (glTF 2.0, 3.7.2.2 and 3.7.3.3).
+// Bounds allow for this rounding: scenes/src/moving/bent.rs and morphed.rs count the operations. Twin: culling/src/world/twin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
@@ -7,9 +7,13 @@
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) readonly buffer Rest { RestVertex items[]; } rest;
-layout(set = 0, binding = 1, scalar) readonly buffer Places { JointPlace items[]; } places;
+layout(set = 0, binding = 1, scalar) readonly buffer Influences { Influence items[]; } influences;
+layout(set = 0, binding = 2, scalar) readonly buffer Displacements { Displacement items[]; } displacements;
+layout(set = 0, binding = 3, scalar) readonly buffer Places { JointPlace items[]; } places;
+// Weights of morph targets, indexed by weight.
+layout(set = 0, binding = 4, scalar) readonly buffer Weights { float items[]; } weights;
 // Vertices that begin with a position and a normal, whatever follows.
-layout(set = 0, binding = 2, scalar) writeonly buffer Vertices { uint words[]; } vertices;
+layout(set = 0, binding = 5, scalar) writeonly buffer Vertices { uint words[]; } vertices;
 layout(push_constant, scalar) uniform Push {
     uint vertex_count;
     uint first_word;        // of the first that is written; they lie side by side
@@ -33,18 +37,31 @@ void main() {
     uint index = invocation_index();
     if (index >= push.vertex_count) return;
     RestVertex vertex = rest.items[index];
-    JointPlace a = places.items[vertex.joints.x];
-    JointPlace b = places.items[vertex.joints.y];
-    JointPlace c = places.items[vertex.joints.z];
-    JointPlace d = places.items[vertex.joints.w];
-    vec4 w = vertex.weights;
-    precise vec3 x = a.column_x * w.x + b.column_x * w.y + c.column_x * w.z + d.column_x * w.w;
-    precise vec3 y = a.column_y * w.x + b.column_y * w.y + c.column_y * w.z + d.column_y * w.w;
-    precise vec3 z = a.column_z * w.x + b.column_z * w.y + c.column_z * w.z + d.column_z * w.w;
-    precise vec3 shift = a.shift * w.x + b.shift * w.y + c.shift * w.z + d.shift * w.w;
-    precise vec3 position = x * vertex.position.x + y * vertex.position.y + z * vertex.position.z + shift;
-    // By the cofactors, which is right for mirrored and flattened places too, as in draw/objects.
-    vec3 normal = cross(y, z) * vertex.normal.x + cross(z, x) * vertex.normal.y + cross(x, y) * vertex.normal.z;
+    precise vec3 position = vertex.position;
+    vec3 normal = vertex.normal;
+    for (uint at = 0u; at < vertex.displacement_count; at++) {
+        Displacement displacement = displacements.items[vertex.first_displacement + at];
+        float weight = weights.items[displacement.weight];
+        position = position + displacement.position * weight;
+        normal += displacement.normal * weight;
+    }
+    if (vertex.influence_count > 0u) {
+        precise vec3 x = vec3(0.0);
+        precise vec3 y = vec3(0.0);
+        precise vec3 z = vec3(0.0);
+        precise vec3 shift = vec3(0.0);
+        for (uint at = 0u; at < vertex.influence_count; at++) {
+            Influence influence = influences.items[vertex.first_influence + at];
+            JointPlace place = places.items[influence.place];
+            x = x + place.column_x * influence.share;
+            y = y + place.column_y * influence.share;
+            z = z + place.column_z * influence.share;
+            shift = shift + place.shift * influence.share;
+        }
+        position = x * position.x + y * position.y + z * position.z + shift;
+        // The cofactors are right for mirrored and flattened places too, as in draw/objects.
+        normal = cross(y, z) * normal.x + cross(z, x) * normal.y + cross(x, y) * normal.z;
+    }
     uint at = push.first_word + index * push.stride_words;
     vertices.words[at] = floatBitsToUint(position.x);
     vertices.words[at + 1u] = floatBitsToUint(position.y);

@@ -172,6 +172,7 @@ fn emit_push(stage: &StageModel, push: &Struct) -> String {
 fn emit_attributes(stage: &StageModel, one: &str, suffix: &str, attributes: &[Attribute], stride: u32) -> String {
     let field = |attribute: &Attribute| {
         let ty = match attribute.format {
+            VertexFormat::Float => "f32",
             VertexFormat::Float2 => "[f32; 2]",
             VertexFormat::Float3 => "[f32; 3]",
             VertexFormat::Float4 => "[f32; 4]",

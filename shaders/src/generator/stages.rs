@@ -201,13 +201,15 @@ fn attributes(inputs: &[Interface]) -> Result<(Vec<Attribute>, u32), String> {
     for input in inputs {
         let (format, size) = match input.ty {
             Type::Vector(Scalar::F32, 2) if input.name.ends_with("_snorm16") => (VertexFormat::Snorm16x2, 4),
+            Type::Scalar(Scalar::F32) => (VertexFormat::Float, 4),
             Type::Vector(Scalar::F32, 2) => (VertexFormat::Float2, 8),
             Type::Vector(Scalar::F32, 3) => (VertexFormat::Float3, 12),
             Type::Vector(Scalar::F32, 4) => (VertexFormat::Float4, 16),
             Type::Scalar(Scalar::U32) => (VertexFormat::Uint, 4),
             _ => {
                 let name = &input.name;
-                return Err(format!("vertex input `{name}`: takes vec2, vec3, vec4, uint or a vec2 named …_snorm16"));
+                let takes = "float, vec2, vec3, vec4, uint or a vec2 named …_snorm16";
+                return Err(format!("vertex input `{name}`: takes {takes}"));
             }
         };
         let name = input.name.strip_prefix(INSTANCE).unwrap_or(&input.name).to_owned();

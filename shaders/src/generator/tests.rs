@@ -173,8 +173,9 @@ fn a_pipeline_joins_its_shaders() {
     let push = "layout(push_constant, scalar) uniform Push { uint first; } push;";
     let vertex = format!(
         "layout(location = 1) in vec2 normal_snorm16; layout(location = 0) in vec3 position; layout(location = 2) in uint id;
-         layout(location = 3) in vec4 instance_place; layout(location = 0) flat out uint item; {objects} {push}
-         void main() {{ item = id + push.first; gl_Position = objects.items[0] + instance_place; }}"
+         layout(location = 3) in vec4 instance_place; layout(location = 4) in float alpha;
+         layout(location = 0) flat out uint item; {objects} {push}
+         void main() {{ item = id + push.first; gl_Position = objects.items[0] + instance_place * alpha; }}"
     );
     let fragment = |input: &str| {
         format!(
@@ -184,9 +185,12 @@ fn a_pipeline_joins_its_shaders() {
     };
     let joined = pipeline(&vertex, &fragment("uint")).unwrap();
     assert_eq!(joined.bindings.len(), 2);
-    assert_eq!(joined.vertex_stride, 20);
+    assert_eq!(joined.vertex_stride, 24);
     let formats: Vec<_> = joined.vertex.iter().map(|item| (item.format, item.offset)).collect();
-    assert_eq!(formats, [(VertexFormat::Float3, 0), (VertexFormat::Snorm16x2, 12), (VertexFormat::Uint, 16)]);
+    assert_eq!(
+        formats,
+        [(VertexFormat::Float3, 0), (VertexFormat::Snorm16x2, 12), (VertexFormat::Uint, 16), (VertexFormat::Float, 20)]
+    );
     let once_an_instance: Vec<_> = joined.instance.iter().map(|item| (item.name.as_str(), item.offset)).collect();
     assert_eq!((once_an_instance, joined.instance_stride), (vec![("place", 0)], 16));
     assert_eq!(joined.outputs, [1]);

@@ -69,7 +69,7 @@ pub fn boxes(random: &mut Random, shot: &Shot, view: &View) -> Vec<Bounds> {
     };
     let bound = |random: &mut Random, index: usize| {
         let (mut relative, half) = any(random);
-        if index % 2 == 0 {
+        if index.is_multiple_of(2) {
             // Moves the box until it just touches the plane.
             let clip = view.clip_from_relative();
             let widen = [1.0, 1.0];

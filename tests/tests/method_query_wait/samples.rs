@@ -23,8 +23,7 @@ fn make(setup: &Setup<'_>) -> culling::Result<Box<dyn Method>> {
 fn counting(gpu: &Gpu, world: &World) -> Counting {
     Counting {
         queries: OcclusionQueries::new(gpu, "test.queries", world.len() as u32).unwrap(),
-        commands: Buffer::with_data(gpu, "test.commands", &world.read_all_commands().unwrap(), Placement::Upload)
-            .unwrap(),
+        commands: Buffer::with_data(gpu, "test.commands", &world.commands(), Placement::Upload).unwrap(),
     }
 }
 

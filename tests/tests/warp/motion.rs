@@ -152,7 +152,7 @@ fn what_a_skeleton_has_bent_goes_nowhere() {
         let pair = warp(&mut lab, [&shots[0], &shots[1]], stored());
         let (motions, mut bent, mut others) = (pair.warp.read_motions().unwrap(), 0, 0);
         for (index, motion) in motions.iter().enumerate().filter(|(index, _)| pair.depth[*index] != 0.0) {
-            if lab.world.is_bent(pair.items[index]) {
+            if lab.world.is_deformed(pair.items[index]) {
                 bent += 1;
                 assert_eq!(motion.depth != 0.0, goes, "a pixel of a bent object, {later} s later: {motion:?}");
             } else {

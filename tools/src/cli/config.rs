@@ -1,58 +1,94 @@
 //! Flags from a file: `--config sightline.toml`, for runs that are repeated.
 
 use super::Cli;
+use crate::results::files::read_text;
 use anyhow::{bail, Context, Result};
-use clap::CommandFactory;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, CommandFactory};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
-const FLAG: &str = "--config";
+const FLAG: &str = "config";
 
-/// The command line with what a `--config FILE` in it says: `[COMMAND]` with `flag = value`, for each flag that was not typed. A list is the
-/// flag given several times, `true` a flag without a value.
+/// Most bytes of a file of flags.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Adds the flags of `--config FILE` to a command line. The file has `[COMMAND]` with `flag = value`; flags that were typed are
+/// skipped. A command of a command, such as `scene export`, has `[scene.export]`. A list is the flag given several times, `true` a flag
+/// without a value.
 ///
 /// # Errors
 /// A file that cannot be read, or a flag that the command does not have.
-pub fn with_config(typed: Vec<String>) -> Result<Vec<String>> {
-    let Some(file) = file_in(&typed) else { return Ok(typed) };
-    let text = std::fs::read_to_string(&file).with_context(|| format!("{file}: cannot read this file"))?;
+pub fn with_config(typed: Vec<OsString>) -> Result<Vec<OsString>> {
+    // clap parses the command line, so that a value is never taken for a command. Its errors are reported when the line is parsed
+    // again.
+    let Ok(matches) = Cli::command().ignore_errors(true).try_get_matches_from(&typed) else { return Ok(typed) };
+    let Some(file) = file_in(&matches) else { return Ok(typed) };
     let mut program = Cli::command();
     program.build();
-    let Some(command) = typed.iter().skip(1).find_map(|word| program.find_subcommand(word)) else {
-        // Help, or an error of the command line, which is told as ever.
+    let Chosen { names, command, matches } = Chosen::of(&program, &matches);
+    if names.is_empty() {
         return Ok(typed);
-    };
-    let tables: Table = text.parse().map_err(|error: toml::de::Error| {
-        let line = error.span().map_or(1, |span| text[..span.start].lines().count().max(1));
-        anyhow::anyhow!("{file}: line {line}: {}", error.message())
-    })?;
-    check_tables(&tables, &program, &file)?;
-    let mut all = typed.clone();
-    match tables.get(command.get_name()) {
-        None => {}
-        Some(Value::Table(flags)) => {
-            for (flag, value) in flags {
-                check_flag(command, flag, &file)?;
-                if !is_typed(&typed, flag) {
-                    all.extend(words(flag, value).with_context(|| format!("{file}: [{}] {flag}", command.get_name()))?);
-                }
-            }
-        }
-        Some(_) => bail!("{file}: {0} is no table; write [{0}], and its flags below", command.get_name()),
     }
+    let shown = file.display().to_string();
+    let tables = tables(&file)?;
+    check_names(&tables, &program, &shown)?;
+    let Some(flags) = table_of(&tables, &names, &shown)? else { return Ok(typed) };
+    let place = names.join(".");
+    let mut added = Vec::new();
+    for (flag, value) in flags {
+        if command.find_subcommand(flag).is_some() {
+            continue;
+        }
+        let id = id_of(command, flag, &format!("{shown}: [{place}]"))?;
+        if matches.value_source(id) != Some(ValueSource::CommandLine) {
+            added.extend(words(flag, value).with_context(|| format!("{shown}: [{place}] {flag}"))?);
+        }
+    }
+    // No word behind `--` is a flag.
+    let end = typed.iter().position(|word| word == "--").unwrap_or(typed.len());
+    let mut all = typed;
+    all.splice(end..end, added.into_iter().map(OsString::from));
     Ok(all)
 }
 
-/// The file that a command line names, if it does.
-fn file_in(typed: &[String]) -> Option<String> {
-    let place = typed.iter().position(|word| word == FLAG || word.starts_with("--config="))?;
-    match typed[place].split_once('=') {
-        Some((_, file)) => Some(file.to_owned()),
-        None => typed.get(place + 1).cloned(),
+/// The command that is run.
+struct Chosen<'a> {
+    /// Its name, after the name of the command that it belongs to.
+    names: Vec<&'a str>,
+    command: &'a clap::Command,
+    matches: &'a ArgMatches,
+}
+
+impl<'a> Chosen<'a> {
+    fn of(program: &'a clap::Command, matches: &'a ArgMatches) -> Self {
+        let mut chosen = Chosen { names: Vec::new(), command: program, matches };
+        while let Some((name, matches)) = chosen.matches.subcommand() {
+            let Some(command) = chosen.command.find_subcommand(name) else { break };
+            chosen.names.push(name);
+            (chosen.command, chosen.matches) = (command, matches);
+        }
+        chosen
     }
 }
 
+/// Returns the file of `--config`, given before or after the command.
+fn file_in(matches: &ArgMatches) -> Option<PathBuf> {
+    let below = || matches.subcommand().and_then(|(_, below)| file_in(below));
+    matches.try_get_one::<PathBuf>(FLAG).ok().flatten().cloned().or_else(below)
+}
+
+fn tables(file: &Path) -> Result<Table> {
+    let text = read_text(file, MOST_BYTES).with_context(|| format!("{}: cannot read this file", file.display()))?;
+    text.parse().map_err(|error: toml::de::Error| {
+        let line = error.span().map_or(1, |span| text[..span.start].lines().count().max(1));
+        anyhow::anyhow!("{}: line {line}: {}", file.display(), error.message())
+    })
+}
+
 /// A misspelt command would else be passed over without a word.
-fn check_tables(tables: &Table, program: &clap::Command, file: &str) -> Result<()> {
+fn check_names(tables: &Table, program: &clap::Command, file: &str) -> Result<()> {
     match tables.keys().find(|name| program.find_subcommand(name).is_none()) {
         None => Ok(()),
         Some(name) => {
@@ -62,19 +98,36 @@ fn check_tables(tables: &Table, program: &clap::Command, file: &str) -> Result<(
     }
 }
 
-fn check_flag(command: &clap::Command, flag: &str, file: &str) -> Result<()> {
-    let flags =
-        || command.get_arguments().filter_map(clap::Arg::get_long).filter(|long| !["config", "help"].contains(long));
-    if flags().any(|known| known == flag) {
-        return Ok(());
+/// The table of a command; none if the file has none.
+fn table_of<'a>(tables: &'a Table, names: &[&str], file: &str) -> Result<Option<&'a Table>> {
+    let mut found = tables;
+    for (depth, name) in names.iter().enumerate() {
+        found = match found.get(*name) {
+            None => return Ok(None),
+            Some(Value::Table(below)) => below,
+            Some(_) => {
+                let place = names[..=depth].join(".");
+                bail!("{file}: {place} is no table; write [{place}], and its flags below")
+            }
+        };
     }
-    let all = flags().collect::<Vec<_>>().join(", ");
-    bail!("{file}: [{}] has no flag '{flag}'; it has {all}", command.get_name())
+    Ok(Some(found))
 }
 
-fn is_typed(typed: &[String], flag: &str) -> bool {
-    let long = format!("--{flag}");
-    typed.iter().any(|word| *word == long || word.starts_with(&format!("{long}=")))
+/// Returns clap's identifier of a command's flag.
+fn id_of<'a>(command: &'a clap::Command, flag: &str, place: &str) -> Result<&'a str> {
+    let others = |argument: &&clap::Arg| !matches!(argument.get_long(), None | Some(FLAG | "help" | "version"));
+    let flags = || command.get_arguments().filter(others);
+    if let Some(known) = flags().find(|argument| argument.get_long() == Some(flag)) {
+        return Ok(known.get_id().as_str());
+    }
+    let all = flags().filter_map(clap::Arg::get_long).collect::<Vec<_>>().join(", ");
+    let below = command.get_subcommands().map(clap::Command::get_name).filter(|name| *name != "help");
+    match (all.is_empty(), below.collect::<Vec<_>>().join(", ")) {
+        (true, below) if below.is_empty() => bail!("{place} has no flag '{flag}'; it has none"),
+        (true, below) => bail!("{place} has no flag '{flag}'; its commands have: {below}"),
+        (false, _) => bail!("{place} has no flag '{flag}'; it has {all}"),
+    }
 }
 
 /// A flag and its value as they would be typed. The two are one word, so that a value may begin with a hyphen.
@@ -92,7 +145,7 @@ fn words(flag: &str, value: &Value) -> Result<Vec<String>> {
 
 /// A file of such text, of its own for each test.
 #[cfg(test)]
-fn written(text: &str) -> std::path::PathBuf {
+fn written(text: &str) -> PathBuf {
     use std::sync::atomic::{AtomicU32, Ordering};
     static NEXT: AtomicU32 = AtomicU32::new(0);
     let name = format!("sightline-config-{}-{}.toml", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
@@ -110,7 +163,7 @@ mod tests {
     fn read(text: &str, line: &str) -> Result<Cli> {
         let file = written(text);
         let typed = format!("sightline {line} --config {}", file.display());
-        let words = with_config(typed.split(' ').map(str::to_owned).collect());
+        let words = with_config(typed.split(' ').map(OsString::from).collect());
         std::fs::remove_file(file).unwrap();
         Ok(Cli::try_parse_from(words?)?)
     }
@@ -129,10 +182,13 @@ mod tests {
         assert_eq!((plain.scene.frames, plain.scene.scale, plain.explain, plain.no_report), (60, 0.5, true, false));
         assert_eq!(
             (plain.scene.scene, plain.methods.set),
-            (vec!["rooms".to_owned()], vec!["hzb.texels=8".to_owned(), "woc.size=2".to_owned()])
+            (vec![PathBuf::from("rooms")], vec!["hzb.texels=8".to_owned(), "woc.size=2".to_owned()])
         );
         let typed = bench("bench --frames 3 --scene=boxes");
-        assert_eq!((typed.scene.frames, typed.scene.scene[0].as_str(), typed.scene.scale), (3, "boxes", 0.5));
+        assert_eq!(
+            (typed.scene.frames, typed.scene.scene[0].as_path(), typed.scene.scale),
+            (3, Path::new("boxes"), 0.5)
+        );
     }
 
     #[test]
@@ -155,7 +211,51 @@ mod tests {
         assert!(fault("bench = 3").contains("write [bench]"));
         assert!(fault("[bench]\nframes = {a = 1}").contains("[bench] frames: a flag is a text"));
         assert!(fault("[bench]\nframes = ").contains("line 2"));
-        let missing = with_config(["sightline", "bench", "--config=nowhere.toml"].map(str::to_owned).to_vec());
+        let missing = with_config(["sightline", "bench", "--config=nowhere.toml"].map(OsString::from).to_vec());
         assert!(missing.unwrap_err().to_string().contains("nowhere.toml: cannot read"));
+    }
+
+    /// `--config shot bench` took `shot`, the file, for the command.
+    #[test]
+    fn words_that_are_values_are_neither_commands_nor_flags() {
+        let file = written(FILE);
+        let folder = file.with_file_name(format!("sightline-words-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let shot = folder.join("shot");
+        std::fs::copy(&file, &shot).unwrap();
+        let words = |line: &[&str]| with_config(line.iter().map(OsString::from).collect()).unwrap();
+        let shot_name = shot.to_str().unwrap();
+        let bench = words(&["sightline", "--config", shot_name, "bench"]);
+        assert!(bench.contains(&"--frames=60".into()) && !bench.contains(&"--method=eovc".into()), "{bench:?}");
+        // A value that looks like a flag of the file, or like --config.
+        let keys = words(&["sightline", "view", "--keys", "--config", "bench"]);
+        assert_eq!(keys.len(), 5, "{keys:?}");
+        let seen = words(&["sightline", "bench", "--out", "shot", "--config", shot_name]);
+        assert!(seen.contains(&"--frames=60".into()), "{seen:?}");
+        // Flags come before `--`, behind which none would be one.
+        let report = written("[report]\nout = 'x.html'");
+        let ended = words(&["sightline", "report", "--config", report.to_str().unwrap(), "--", "-odd.json"]);
+        assert_eq!(ended[4..], ["--out=x.html", "--", "-odd.json"].map(OsString::from), "{ended:?}");
+        for file in [file, report] {
+            std::fs::remove_file(file).unwrap();
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_command_of_a_command_has_a_table_below() {
+        let export = |text: &str| -> Result<String> {
+            match read(text, "scene export --scene rooms")?.command {
+                Command::Scene(arguments) => Ok(format!("{:?}", arguments.action)),
+                other => panic!("{other:?}"),
+            }
+        };
+        let read = export("[scene.export]\nout = 'rooms.glb'\nscale = 0.5\nscene = 'boxes'").unwrap();
+        assert!(read.contains("rooms.glb") && read.contains("scale: 0.5") && !read.contains("boxes"), "{read}");
+        let fault = |text: &str| format!("{:#}", export(text).unwrap_err());
+        assert!(
+            fault("[scene.export]\nsize = 'x'\nouts = 1").contains("[scene.export] has no flag 'outs'; it has scene")
+        );
+        assert!(fault("[scene]\nexport = 3").contains("write [scene.export]"));
     }
 }

@@ -12,7 +12,7 @@ pub struct DeviceArgs {
     /// Turn on the validation layer with synchronization validation; any message stops the run. Times then mean little
     #[arg(long)]
     pub validation: bool,
-    /// How stages are timed; decided by a self-check if left out
+    /// How stages are timed; decided by the kind of device if left out (a CPU: split)
     #[arg(long, value_name = "MODE")]
     pub timer: Option<TimerChoice>,
     /// Put a barrier before every stage, to tell a missing barrier from another fault

@@ -8,6 +8,7 @@ mod device;
 mod flares;
 mod picture;
 mod shot;
+mod start;
 mod stress;
 mod sweep;
 #[cfg(test)]
@@ -20,8 +21,9 @@ pub use config::with_config;
 pub use device::{DepthChoice, DeviceArgs, TimerChoice};
 pub use flares::FlareChoice;
 pub use picture::SampleChoice;
-use picture::{bounds_names, parse_shading, parse_size};
+use picture::{bounds_names, fit_names, parse_shading, parse_size};
 pub use shot::{ShotArgs, Show};
+pub use start::start;
 pub use stress::{StressArgs, STRESS_HELP};
 pub use sweep::SweepArgs;
 pub use view::{view_help, ViewArgs};
@@ -34,7 +36,7 @@ use clap::{Args, Parser, Subcommand};
 use culling::auto::ALLOW_ERROR_OPTION;
 use culling::world::{DETAIL_OPTION, SKIP_OPTION};
 use culling::{OptionInfo, Shading, METHODS, PARTICULAR};
-use scenes::{MovingBounds, SceneOptions};
+use scenes::{Fit, MovingBounds, SceneOptions};
 use std::path::{Path, PathBuf};
 
 /// A laboratory for indirect-draw occlusion culling: pick a scene, a camera path and methods; see run time against error,
@@ -110,7 +112,7 @@ pub struct SceneChoice {
     /// Scene name (see `sightline scene list`), or a .glb or .gltf file; city-block if left out. A table takes several,
     /// separated by commas or by giving --scene again; a file whose name holds commas is taken whole if it is there
     #[arg(long, value_name = "NAME|FILE")]
-    pub scene: Vec<String>,
+    pub scene: Vec<PathBuf>,
     /// Objects of a procedural scene, as a multiple of its standard number
     #[arg(long, value_name = "F", default_value_t = 0.25, allow_negative_numbers = true)]
     pub scale: f64,
@@ -123,7 +125,7 @@ pub struct SceneChoice {
     /// Camera path: walk, pan, zoom, rotate, closing-in, still, the scene's own `camera`, a recorded .json file, or cuts:
     /// each frame somewhere else on the scene's way (its camera's or its walk), so that no frame is like the one before
     #[arg(long, value_name = "NAME|FILE")]
-    pub path: Option<String>,
+    pub path: Option<PathBuf>,
     /// How fast the camera goes: at 1, a frame is 1/960 of the path's way (16 s at 60 Hz)
     #[arg(long, value_name = "F", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
@@ -136,6 +138,10 @@ pub struct SceneChoice {
     /// Picture size in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     pub size: [u32; 2],
+    /// How the rectangle of a file's camera (its aspectRatio, or xmag and ymag) is fitted into the picture: inside (all of it is seen)
+    /// or height (as high as the picture; a narrower picture crops it)
+    #[arg(long, value_name = "WAY", default_value = Fit::default().name(), value_parser = fit_names())]
+    pub fit: Fit,
     /// What is drawn of materials: lambert (one colour an object) or textured; if left out, what the scene has
     #[arg(long, value_name = "lambert|textured", value_parser = parse_shading)]
     pub shading: Option<Shading>,
@@ -209,7 +215,7 @@ pub struct BenchArgs {
     #[command(flatten)]
     pub device: DeviceArgs,
     /// Frames run before the clock starts; 3 if left out, and 12 of the table `lean`, in which `auto` tries what there is
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub warmup: Option<u32>,
     /// Only times: leave out the truth, the errors and the pictures' measures
     #[arg(long)]
@@ -283,41 +289,51 @@ impl SceneChoice {
     /// # Errors
     /// More than one scene.
     pub fn session(&self) -> Result<SessionOptions> {
-        Ok(self.session_of(self.one_scene()?))
+        Ok(self.session_of(&self.one_scene()?))
     }
 
     /// The scene, where only one will do.
     ///
     /// # Errors
-    /// More than one scene.
-    pub fn one_scene(&self) -> Result<&str> {
-        match self.scenes().as_slice() {
-            [] => Ok("city-block"),
-            [one] => Ok(*one),
-            all => bail!(
-                "--scene {}: give one scene; only a table of `sightline bench --table` runs several",
-                all.join(",")
-            ),
+    /// More than one scene, or none where `--scene` was given.
+    pub fn one_scene(&self) -> Result<PathBuf> {
+        match self.scenes()?.as_slice() {
+            [] => Ok("city-block".into()),
+            [one] => Ok(one.clone()),
+            all => {
+                let all: Vec<_> = all.iter().map(|scene| scene.display().to_string()).collect();
+                let all = all.join(",");
+                bail!("--scene {all}: give one scene; only a table of `sightline bench --table` runs several")
+            }
         }
     }
 
-    /// All that is named: each `--scene` is a file of that name, commas and all, or else a list.
-    pub fn scenes(&self) -> Vec<&str> {
-        let named = |given: &'_ str| Path::new(given).is_file();
+    /// Returns all scenes that are named. Each `--scene` is a file of that name, commas included, or else a list. A name that is not
+    /// UTF-8 is always a file.
+    ///
+    /// # Errors
+    /// A `--scene` without a name: the default must not run in its place.
+    pub fn scenes(&self) -> Result<Vec<PathBuf>> {
         let mut scenes = Vec::new();
         for given in &self.scene {
-            match named(given) {
-                true => scenes.push(given.as_str()),
-                false => scenes.extend(given.split(',').map(str::trim).filter(|name| !name.is_empty())),
+            match given.to_str().filter(|_| !given.is_file()) {
+                None => scenes.push(given.clone()),
+                Some(list) => {
+                    let before = scenes.len();
+                    scenes.extend(list.split(',').map(str::trim).filter(|name| !name.is_empty()).map(PathBuf::from));
+                    if scenes.len() == before {
+                        bail!("--scene '{list}' names no scene; see `sightline scene list`, or leave --scene out");
+                    }
+                }
             }
         }
-        scenes
+        Ok(scenes)
     }
 
     /// As a session of one of the scenes takes it.
-    pub fn session_of(&self, scene: &str) -> SessionOptions {
+    pub fn session_of(&self, scene: &Path) -> SessionOptions {
         SessionOptions {
-            scene: scene.to_owned(),
+            scene: scene.to_path_buf(),
             scale: self.scale,
             seed: self.seed,
             detail: self.detail_level,
@@ -326,6 +342,7 @@ impl SceneChoice {
             whole_path: self.whole_path,
             frames: self.frames as usize,
             size: self.size,
+            fit: self.fit,
             shading: self.shading,
             samples: 1,
             bounds: self.bounds,

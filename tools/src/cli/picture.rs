@@ -5,7 +5,7 @@ use crate::run::session::SessionOptions;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::Args;
 use culling::Shading;
-use scenes::MovingBounds;
+use scenes::{Fit, MovingBounds};
 
 /// How finely pixels are drawn.
 #[derive(Args, Clone, Copy, Debug)]
@@ -44,6 +44,12 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
 pub(super) fn bounds_names() -> impl TypedValueParser<Value = MovingBounds> {
     let named = |name: String| MovingBounds::ALL.into_iter().find(|mode| mode.name() == name).unwrap_or_default();
     PossibleValuesParser::new(MovingBounds::ALL.map(MovingBounds::name)).map(named)
+}
+
+/// The ways to fit a camera's rectangle into a picture, by name.
+pub(super) fn fit_names() -> impl TypedValueParser<Value = Fit> {
+    let named = |name: String| Fit::ALL.into_iter().find(|fit| fit.name() == name).unwrap_or_default();
+    PossibleValuesParser::new(Fit::ALL.map(Fit::name)).map(named)
 }
 
 /// What is drawn of materials.

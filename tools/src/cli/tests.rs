@@ -15,9 +15,9 @@ fn one_command_takes_one_scene_and_a_table_several() {
         Ok(Command::Bench(arguments)) => Ok(arguments),
         other => Err(format!("{other:?}")),
     };
-    assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), "city-block");
+    assert_eq!(bench("sightline bench").unwrap().scene.one_scene().unwrap(), Path::new("city-block"));
     let two = bench("sightline bench --scene rooms,boxes --scene city-block --table eovc-2").unwrap();
-    assert_eq!(two.scene.scenes(), ["rooms", "boxes", "city-block"]);
+    assert_eq!(two.scene.scenes().unwrap(), ["rooms", "boxes", "city-block"].map(PathBuf::from));
     assert!(two.scene.one_scene().unwrap_err().to_string().contains("give one scene"));
     for refused in ["--table eovc-1", "--table eovc-2 --method none", "--table eovc-2 --json"] {
         assert!(bench(&format!("sightline bench {refused}")).is_err(), "{refused}");
@@ -29,10 +29,12 @@ fn a_file_whose_name_holds_a_comma_is_taken_whole_where_it_is_there() {
     let folder = std::env::temp_dir().join(format!("sightline-commas-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("red, green.glb");
-    let given = |file: &Path| {
+    let given = |file: &Path| -> Vec<String> {
         let line = ["sightline", "shot", "--scene", file.to_str().unwrap(), "--scene", "rooms,boxes"];
         match Cli::parse_from(line).command {
-            Command::Shot(arguments) => arguments.scene.scenes().into_iter().map(str::to_owned).collect::<Vec<_>>(),
+            Command::Shot(arguments) => {
+                arguments.scene.scenes().unwrap().iter().map(|scene| scene.to_string_lossy().into_owned()).collect()
+            }
             other => panic!("{other:?}"),
         }
     };
@@ -42,6 +44,22 @@ fn a_file_whose_name_holds_a_comma_is_taken_whole_where_it_is_there() {
     let found = given(&file);
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(found, [file.to_str().unwrap(), "rooms", "boxes"]);
+}
+
+/// Each of these values ran the default scene.
+#[test]
+fn a_scene_that_names_none_is_refused() {
+    for none in [",", " ", ",,", " , "] {
+        match Cli::parse_from(["sightline", "shot", "--scene", none]).command {
+            Command::Shot(arguments) => {
+                let error = arguments.scene.session().unwrap_err().to_string();
+                assert!(error.contains("names no scene"), "{error}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(Cli::try_parse_from(["sightline", "shot", "--scene", ""]).is_err());
+    assert!(Cli::try_parse_from(["sightline", "bench", "--scene=", "--table", "eovc-2"]).is_err());
 }
 
 #[test]

@@ -25,7 +25,7 @@ impl std::fmt::Display for Difference {
 /// Name, whether it changes what a frame shows, and value.
 type Fact = (&'static str, bool, fn(&Results) -> String);
 
-const FACTS: [Fact; 14] = [
+const FACTS: [Fact; 13] = [
     ("scene", true, |run| run.scene.name.clone()),
     ("objects", true, |run| run.scene.objects.to_string()),
     ("triangles", true, |run| run.scene.triangles.to_string()),
@@ -39,8 +39,15 @@ const FACTS: [Fact; 14] = [
     ("type of device", false, |run| run.device.kind.clone()),
     ("driver", false, |run| run.device.driver.clone()),
     ("depth format", true, |run| run.device.depth_format.clone()),
-    ("timers", false, |run| run.device.timer_mode.clone()),
 ];
+
+/// Returns a line if the two runs timed stages differently: times of stages then cannot be compared, frame times can. Older versions
+/// chose the timer by a measurement, which could differ in two runs of one command.
+pub fn other_timers(a: &Results, b: &Results) -> Option<String> {
+    let [a, b] = [a, b].map(|run| &run.device.timer_mode);
+    let differ = a != b && !a.is_empty() && !b.is_empty();
+    differ.then(|| format!("timers: {a} in A, {b} in B; times of stages cannot be compared, those of frames can"))
+}
 
 /// All that differs between two runs and should not. What a file does not say (older ones have no hash of the scene) is
 /// taken to be the same.

@@ -10,7 +10,7 @@ mod print;
 mod tests;
 
 pub use bootstrap::{ratio, ratio_by, Bootstrap, Ratio, Side, Verdict, FEWEST_FRAMES};
-pub use differences::{differences, Difference};
+pub use differences::{differences, other_timers, Difference};
 pub use gate::{Figure, Gate, Outcome};
 pub use print::{gates_text, run_lines, text};
 
@@ -38,6 +38,8 @@ pub struct CompareOptions<'a> {
 pub struct Comparison {
     /// What differs between the runs and should not; only with `force`.
     pub differences: Vec<Difference>,
+    /// The timers of both runs; none if they are the same.
+    pub timers: Option<String>,
     /// Whether times were resampled in pairs, frame by frame: frame i shows the same in both runs.
     pub pairs: bool,
     /// How the intervals were made.
@@ -124,6 +126,7 @@ pub fn compare(a: &Results, b: &Results, options: CompareOptions<'_>) -> Result<
     };
     Ok(Comparison {
         differences,
+        timers: other_timers(a, b),
         pairs,
         bootstrap: options.bootstrap,
         by: options.by.map(str::to_owned),

@@ -26,6 +26,7 @@ pub fn run_lines(name: &str, path: &Path, results: &Results) -> String {
 pub fn text(comparison: &Comparison, b: &Results) -> String {
     let mut lines = heading(b);
     lines.extend(comparison.differences.iter().map(|difference| format!("forced, though they differ: {difference}")));
+    lines.extend(comparison.timers.clone());
     lines.push(String::new());
     lines.extend(times_table(comparison));
     lines.push(String::new());

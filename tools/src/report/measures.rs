@@ -63,6 +63,9 @@ const ERRORS: &[Measure] = &[
     measure("tied px", "pixels a frame of equal depth that another object won: no error", |_, m| {
         Some(m.tied_pixels_mean)
     }),
+    measure("thin px", "wrong pixels a frame that only a primitive under 1/8 pixel can have made: excused", |_, m| {
+        Some(m.thin_pixels_mean)
+    }),
     Measure {
         nothing: "identical",
         ..measure("PSNR dB", "likeness of the picture to the truth, mean over the frames that differ", |_, m| {

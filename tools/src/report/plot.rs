@@ -147,7 +147,7 @@ fn thousands(digits: &str) -> String {
     let mut text = String::new();
     for (place, letter) in digits.chars().enumerate() {
         let left = digits.len() - place;
-        if place > 0 && left % 3 == 0 && letter.is_ascii_digit() && !text.ends_with('-') {
+        if place > 0 && left.is_multiple_of(3) && letter.is_ascii_digit() && !text.ends_with('-') {
             text.push('\u{202f}');
         }
         text.push(letter);

@@ -1,5 +1,7 @@
 //! Tables of text that fit 120 columns, and the numbers in them.
 
+use super::output::one_line;
+
 /// Widest line of any table.
 pub(crate) const WIDTH: usize = 120;
 
@@ -14,8 +16,9 @@ pub(crate) fn milliseconds(ms: f64) -> String {
     format!("{ms:.decimals$}")
 }
 
-/// Cut to the table's width, with a sign that it was cut.
+/// One line without control characters, cut to the table's width, with a sign that it was cut.
 pub(crate) fn clipped(line: &str) -> String {
+    let line = &*one_line(line);
     if line.chars().count() <= WIDTH {
         return line.to_string();
     }
@@ -42,7 +45,7 @@ impl Grid {
 
     /// Lines that a row with this label takes.
     pub(crate) fn lines_of(&self, label: &str) -> usize {
-        let length = label.chars().count();
+        let length = one_line(label).chars().count();
         if length <= self.label_limit {
             1
         } else {
@@ -60,7 +63,9 @@ impl Grid {
     }
 
     pub(crate) fn lines(&self, label_head: &str) -> Vec<String> {
-        let fitting = self.rows.iter().map(|(label, _)| label.chars().count());
+        // Labels may name files.
+        let labels: Vec<_> = self.rows.iter().map(|(label, _)| one_line(label)).collect();
+        let fitting = labels.iter().map(|label| label.chars().count());
         let fitting = fitting.filter(|&length| length <= self.label_limit);
         let label_width = fitting.chain([label_head.chars().count()]).max().unwrap_or(0);
         let widths = self.widths();
@@ -72,7 +77,7 @@ impl Grid {
             line
         };
         let mut lines = vec![line(label_head, &mut self.heads.iter().copied())];
-        for (label, cells) in &self.rows {
+        for (label, (_, cells)) in labels.iter().zip(&self.rows) {
             let mut cells = cells.iter().map(String::as_str);
             if self.lines_of(label) == 1 {
                 lines.push(line(label, &mut cells));

@@ -130,6 +130,11 @@ pub struct Method {
     /// Pixels of equal depth won by another object: no error.
     #[serde(default)]
     pub tied_pixels_mean: f64,
+    /// Wrong pixels that only a primitive under 1/8 pixel can have made: they are outside the raster conditions of promised depths. If
+    /// they explain every error of a frame, the frame's false negatives, differing pixels, PSNR and SSIM count as right. If not,
+    /// nothing is excused and none are counted here. 0 with several samples a pixel or another depth format.
+    #[serde(default)]
+    pub thin_pixels_mean: f64,
     /// Mean over the frames that are not identical; `null`: all are identical.
     pub psnr_mean_db: Option<f64>,
     /// The worst frame; `null`: all are identical.
@@ -261,6 +266,8 @@ pub struct Frames {
     pub differing_pixels: Vec<u64>,
     /// Pixels of equal depth won by another object.
     pub tied_pixels: Vec<u64>,
+    /// Pixels outside the raster conditions; see [`Method::thin_pixels_mean`].
+    pub thin_pixels: Vec<u64>,
     /// `null`: identical.
     pub psnr_db: Vec<Option<f64>>,
     /// 1: identical.

@@ -1,14 +1,55 @@
 //! Reading `results.json` with errors that name the field.
 
+use super::output::{is_obeyed, one_line};
 use super::{Fault, Results, ResultsError};
+use crate::results::files::read_text;
+use serde_json::Value;
 use std::path::Path;
+
+/// Most bytes of a file that is read: an endless one (`/dev/zero`) must not fill the memory.
+const MOST_BYTES: u64 = 4 << 30;
 
 impl Results {
     /// Reads and checks a file. The error names the file and the field.
     pub fn read_json(path: &Path) -> Result<Self, ResultsError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|cause| ResultsError::Read { path: path.to_path_buf(), cause })?;
-        parse(&text).map_err(|Fault { field, fault }| ResultsError::Broken { path: path.to_path_buf(), field, fault })
+        read(path, |_, results| Ok(results))
+    }
+
+    /// Reads and checks a file for a terminal: control characters in names and texts are escaped, as the file may come from anywhere.
+    pub fn read_plain(path: &Path) -> Result<Self, ResultsError> {
+        read(path, |text, results| if may_obey(text) { plain(&results) } else { Ok(results) })
+    }
+}
+
+fn read(path: &Path, then: impl Fn(&str, Results) -> Result<Results, Fault>) -> Result<Results, ResultsError> {
+    let text = read_text(path, MOST_BYTES).map_err(|cause| ResultsError::Read { path: path.to_path_buf(), cause })?;
+    let read = parse(&text).and_then(|results| then(&text, results));
+    read.map_err(|Fault { field, fault }| ResultsError::Broken { path: path.to_path_buf(), field, fault })
+}
+
+/// True if a string of this JSON text may hold a control character.
+fn may_obey(text: &str) -> bool {
+    text.contains(|letter| letter == '\\' || is_obeyed(letter) && !matches!(letter, '\n' | '\r' | '\t'))
+}
+
+/// Escapes the control characters of results.
+fn plain(results: &Results) -> Result<Results, Fault> {
+    let failed = |error: serde_json::Error| Fault { field: "the file".into(), fault: plain_words(&error) };
+    let value = plain_value(serde_json::to_value(results).map_err(failed)?);
+    let results: Results = serde_json::from_value(value).map_err(failed)?;
+    // Two labels may be equal after escaping.
+    results.check()?;
+    Ok(results)
+}
+
+fn plain_value(value: Value) -> Value {
+    match value {
+        Value::String(text) => Value::String(one_line(&text).into_owned()),
+        Value::Array(values) => values.into_iter().map(plain_value).collect(),
+        Value::Object(fields) => {
+            fields.into_iter().map(|(name, value)| (one_line(&name).into_owned(), plain_value(value))).collect()
+        }
+        other => other,
     }
 }
 
@@ -16,8 +57,9 @@ impl Results {
 pub(super) fn parse(text: &str) -> Result<Results, Fault> {
     let located = |error: serde_json::Error| Fault {
         field: field_at(text, byte_at(text, error.line(), error.column())),
-        fault: error.to_string(),
+        fault: plain_words(&error),
     };
+    check_is_object(text)?;
     #[derive(serde::Deserialize)]
     struct Version {
         schema: u32,
@@ -32,6 +74,52 @@ pub(super) fn parse(text: &str) -> Result<Results, Fault> {
     let results: Results = serde_json::from_str(text).map_err(located)?;
     results.check()?;
     Ok(results)
+}
+
+/// Refuses JSON that is not an object. serde would read a list as a struct, and name Rust types for other values.
+fn check_is_object(text: &str) -> Result<(), Fault> {
+    let start = text.trim_start();
+    // Before anything is parsed: results can be large.
+    if start.starts_with('{') {
+        return Ok(());
+    }
+    let holds = match serde_json::from_str(text) {
+        _ if start.is_empty() => "nothing",
+        Ok(Value::Null) => "null",
+        Ok(Value::Bool(_)) => "a truth value",
+        Ok(Value::Number(_)) => "a number",
+        Ok(Value::String(_)) => "a text",
+        Ok(Value::Array(_)) => "a list",
+        // The parser reports errors of JSON.
+        Ok(Value::Object(_)) | Err(_) => return Ok(()),
+    };
+    let fault = format!("holds {holds}, but results are an object, as `sightline bench` writes them");
+    Err(Fault { field: "the file".into(), fault })
+}
+
+/// Rewrites serde_json's message with JSON's types in place of Rust's.
+fn plain_words(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let text = match error.classify() {
+        serde_json::error::Category::Syntax => format!("is not JSON: {message}"),
+        serde_json::error::Category::Eof => format!("the JSON ends too early; was the file cut off? ({message})"),
+        _ => message,
+    };
+    let Some((before, expected)) = text.rsplit_once("expected ") else { return text };
+    let end = expected.find(" at line ").unwrap_or(expected.len());
+    let (wanted, place) = expected.split_at(end);
+    let plain = match wanted {
+        "f32" | "f64" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of 0 or more",
+        "i32" | "i64" | "isize" => "a whole number",
+        "a sequence" => "a list",
+        "a map" => "an object",
+        "a string" => "a text",
+        "a boolean" => "true or false",
+        wanted if wanted.starts_with("struct ") => "an object",
+        wanted => wanted,
+    };
+    format!("{before}expected {plain}{place}")
 }
 
 /// The byte that serde_json calls `line`, `column` (both from 1; column 0 is the end of the line before).

@@ -23,7 +23,18 @@ pub fn table(results: &Results) -> String {
         "frame: median ms · C/R: culled / culled by ref · diff px: pixels of other depth, mean · PSNR: dB, worst frame"
             .into(),
     );
+    lines.extend(results.methods.iter().filter(|method| method.thin_pixels_mean > 0.0).map(thin_line));
     lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// A line for the excused pixels of a method.
+fn thin_line(method: &Method) -> String {
+    let thin: u64 = method.frames.thin_pixels.iter().sum();
+    let frames = method.frames.thin_pixels.iter().filter(|pixels| **pixels > 0).count();
+    clipped(&format!(
+        "{}: {thin} wrong pixels in {frames} frames are excused: only primitives under 1/8 pixel can have made them",
+        method.label
+    ))
 }
 
 /// One row per stage of a method: did it run, what it costs, what skipping it saves a frame, and why it was skipped. For

@@ -129,6 +129,7 @@ const SCALARS: &[(&str, Cell)] = &[
     ("refits_mean", |_, m| measured(m, m.refits_mean)),
     ("node_visits_mean", |_, m| measured(m, m.node_visits_mean)),
     ("device_memory_mib", |_, m| m.device_memory_mib.to_string()),
+    ("thin_pixels_mean", |_, m| measured(m, m.thin_pixels_mean)),
 ];
 
 /// The columns between those and the stages, of runs with lens flares.

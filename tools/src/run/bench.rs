@@ -1,6 +1,8 @@
 //! The main job: methods × frames, once for the clock and once for the truth, into results.
 
 mod flares;
+mod folder;
+mod measure;
 mod pairs;
 mod stages;
 
@@ -11,9 +13,12 @@ use crate::run::capture::{self, CaptureOrder};
 use crate::run::session::Session;
 use crate::run::truth::RunTruth;
 use crate::run::{Contender, Measured};
-use anyhow::{Context, Result};
+pub use folder::{make_folder, ready, write};
+
+use anyhow::Result;
 use culling::{Entry, Options, VisibleSets, Work};
 use engine::{FrameReport, TimerMode};
+use measure::{measure, Followers};
 use pairs::Pair;
 use stages::{stage_times, stages};
 use std::path::PathBuf;
@@ -64,6 +69,8 @@ struct Records {
     /// The frames of the warm-up before those.
     warm: Vec<FrameReport>,
     errors: Vec<crate::measures::metrics::FrameError>,
+    /// Pixels outside the raster conditions, by frame.
+    thin: Vec<u64>,
     triangles: Vec<u64>,
     draws: Vec<u64>,
     overdraw: Vec<f64>,
@@ -195,45 +202,14 @@ fn time(
     Ok(())
 }
 
-/// Who looks on at the untimed pass.
-struct Followers<'a> {
-    pairs: &'a mut [Pair],
-    progress: Progress<'a>,
-    watch: Watch<'a>,
-}
-
-fn measure(
-    session: &mut Session,
-    contenders: &mut [Contender],
-    records: &mut [Records],
-    truth: &RunTruth,
-    options: &BenchOptions,
-    followers: Followers<'_>,
-) -> Result<()> {
-    let Followers { pairs, progress, watch } = followers;
-    repeat(session, contenders, options.warmup)?;
-    for frame in 0..session.frames() {
-        let truth = truth.frame(session, frame)?;
-        let mut pictures = Vec::new();
-        for (place, (contender, records)) in contenders.iter_mut().zip(records.iter_mut()).enumerate() {
-            let measured = contender.measured(session, frame, &truth)?;
-            watch(Seen { label: &contender.label(), frame, truth: truth.images(), measured: &measured })?;
-            let images = records.push(measured);
-            pictures.push(pairs.iter().any(|pair| pair.needs(place)).then_some(images));
-        }
-        pairs.iter_mut().try_for_each(|pair| pair.compare(&pictures))?;
-        progress("measuring errors", frame + 1, session.frames());
-    }
-    Ok(())
-}
-
 impl Records {
     fn counted(&self, of: fn(&Work) -> u64) -> Vec<u64> {
         self.work.iter().map(of).collect()
     }
 
     /// Takes over what was measured, and gives back the pictures.
-    fn push(&mut self, measured: Measured) -> FrameImages {
+    fn push(&mut self, (measured, thin): (Measured, u64)) -> FrameImages {
+        self.thin.push(thin);
         self.triangles.push(measured.drawn.triangles);
         self.draws.push(measured.drawn.draws);
         self.overdraw.push(measured.overdraw);
@@ -256,6 +232,7 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         frame_ms: FrameMs::from_samples(&frame_ms).unwrap_or_default(),
         host_ms: stats::median(&host_ms),
         stages: stages(&records.staged, &records.warm),
+        thin_pixels_mean: mean(&records.thin),
         triangles_mean: mean(&records.triangles),
         draws_mean: mean(&records.draws),
         overdraw_mean: stats::mean(&records.overdraw),
@@ -293,6 +270,7 @@ fn frames(frame_ms: Vec<f64>, records: &Records) -> Frames {
         false_negatives: of(|error| error.false_negatives as u64),
         differing_pixels: of(|error| error.differing_pixels as u64),
         tied_pixels: of(|error| error.tied_pixels as u64),
+        thin_pixels: records.thin.clone(),
         psnr_db: records.errors.iter().map(|error| error.psnr_db).collect(),
         ssim: records.errors.iter().map(|error| error.ssim).collect(),
         triangles: records.triangles.clone(),
@@ -355,21 +333,4 @@ pub fn header(session: &Session, command: &str) -> Results {
         frames: session.frames() as u32,
         methods: Vec::new(),
     }
-}
-
-/// Makes the folder for results if it is not there.
-///
-/// # Errors
-/// There is a file in its place, or no right to make it.
-pub fn make_folder(folder: &std::path::Path) -> Result<()> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))
-}
-
-/// Writes results.json and results.csv to a folder, which is made if it is not there.
-pub fn write(results: &Results, folder: &std::path::Path) -> Result<()> {
-    make_folder(folder)?;
-    results.write_json(&folder.join("results.json"))?;
-    results.write_csv(&folder.join("results.csv"))?;
-    Ok(())
 }

@@ -3,6 +3,8 @@
 pub mod bench;
 pub mod capture;
 pub mod methods;
+mod ordered;
+pub mod raster;
 pub mod samples;
 pub mod session;
 mod stray;
@@ -10,7 +12,7 @@ pub mod sweep;
 pub mod targets;
 pub mod truth;
 
-use crate::measures::metrics::{compare, FrameError, FrameImages, Truth};
+use crate::measures::metrics::{compare, FrameError, FrameImages, MetricError, Truth};
 use crate::run::session::Session;
 use anyhow::{bail, Context, Result};
 use culling::auto::ALLOW_ERROR_OPTION;
@@ -128,6 +130,12 @@ impl Contender {
 
     /// Runs one frame with the item buffer on and compares it with the truth.
     pub fn measured(&mut self, session: &mut Session, frame: usize, truth: &Truth) -> Result<Measured> {
+        let left = self.left(session, frame)?;
+        left.against(truth).with_context(|| format!("method '{}', frame {frame}", self.label()))
+    }
+
+    /// Runs one frame with the item buffer on and reads its results from the device, for a comparison with the truth.
+    fn left(&mut self, session: &mut Session, frame: usize) -> Result<Left> {
         let view = session.look(frame)?;
         self.method.count_work(true);
         let report = self.run(session, &view, Watched::Items)?;
@@ -135,16 +143,11 @@ impl Contender {
         let work = self.method.work()?;
         let images = session.targets.read_frame(&session.world, &view, &report)?;
         let drawn = drawn_objects(&session.gpu, &session.world, &report)?;
-        let error = compare(truth, &images, &drawn.objects)
-            .with_context(|| format!("method '{}', frame {frame}", self.label()))?;
         let counts = fragment_counts(session, &view, &report)?;
-        let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
-        let covered = covered as f64 / f64::from(session.targets.samples());
-        let fragments: u64 = counts.iter().map(|count| u64::from(*count)).sum();
-        let overdraw = if covered == 0.0 { 0.0 } else { fragments as f64 / covered };
+        let fragments = counts.iter().map(|count| u64::from(*count)).sum();
         let counts = session.targets.spread(counts);
-        let bounds_brought = session.world.bounds_brought();
-        Ok(Measured { error, drawn, overdraw, counts, work, bounds_brought, images })
+        let (bounds_brought, samples) = (session.world.bounds_brought(), session.targets.samples());
+        Ok(Left { images, drawn, counts, fragments, work, bounds_brought, samples })
     }
 
     /// Runs one frame through a view.
@@ -170,6 +173,32 @@ impl Contender {
             self.method.measured(report.frame_ms);
         }
         Ok(report)
+    }
+}
+
+/// The results of a measured frame, read back from the device.
+struct Left {
+    images: FrameImages,
+    drawn: Drawn,
+    /// How often each pixel was shaded.
+    counts: Vec<u32>,
+    /// The sum of the counts; each pixel counts once, even with several samples.
+    fragments: u64,
+    work: Work,
+    bounds_brought: u64,
+    /// Samples a pixel.
+    samples: u32,
+}
+
+impl Left {
+    /// Compares the frame with the truth. Needs no device, so any thread can do it.
+    fn against(self, truth: &Truth) -> Result<Measured, MetricError> {
+        let Left { images, drawn, counts, fragments, work, bounds_brought, samples } = self;
+        let error = compare(truth, &images, &drawn.objects)?;
+        let covered = images.depth.iter().filter(|depth| **depth > 0.0).count();
+        let covered = covered as f64 / f64::from(samples);
+        let overdraw = if covered == 0.0 { 0.0 } else { fragments as f64 / covered };
+        Ok(Measured { error, drawn, overdraw, counts, work, bounds_brought, images })
     }
 }
 

@@ -5,14 +5,15 @@ use anyhow::{bail, Context, Result};
 use culling::flares::Settings;
 use culling::{Shading, View, World};
 use engine::{Gpu, GpuOptions};
-use scenes::{CameraPath, MovingBounds, Scene, SceneOptions, Shot};
+use scenes::{CameraPath, Fit, MovingBounds, Scene, SceneOptions, Shot};
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// What a session is opened with.
 #[derive(Clone, Debug)]
 pub struct SessionOptions {
     /// Scene name, or a .glb or .gltf file.
-    pub scene: String,
+    pub scene: PathBuf,
     /// Multiple of a procedural scene's standard number of objects.
     pub scale: f64,
     /// Seed of a procedural scene.
@@ -20,7 +21,7 @@ pub struct SessionOptions {
     /// How finely a procedural scene's meshes are divided.
     pub detail: u32,
     /// Path name or .json file; none takes the scene's default.
-    pub path: Option<String>,
+    pub path: Option<PathBuf>,
     /// How many times the path's way the camera goes in a run.
     pub speed: f64,
     /// Spread the whole way over the run, however few frames that has.
@@ -29,6 +30,8 @@ pub struct SessionOptions {
     pub frames: usize,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// The fit of the rectangle of a file's camera into the picture.
+    pub fit: Fit,
     /// What is drawn of materials; none takes what the scene has.
     pub shading: Option<Shading>,
     /// Samples a pixel, 1 or 4.
@@ -42,7 +45,7 @@ pub struct SessionOptions {
 impl Default for SessionOptions {
     fn default() -> Self {
         SessionOptions {
-            scene: "city-block".to_owned(),
+            scene: "city-block".into(),
             scale: 1.0,
             seed: 1,
             detail: SceneOptions::default().detail,
@@ -51,6 +54,7 @@ impl Default for SessionOptions {
             whole_path: false,
             frames: 30,
             size: [1280, 720],
+            fit: Fit::default(),
             shading: None,
             samples: 1,
             bounds: MovingBounds::default(),
@@ -91,11 +95,13 @@ impl Session {
         if options.frames == 0 {
             bail!("a run needs at least one frame: give --frames a number above 0");
         }
-        let path = match options.path.as_deref() {
-            Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), options.speed)?,
-            name => CameraPath::named(&scene, name, options.speed)?,
-        };
+        let path = camera_path(&scene, options.path.as_deref(), options.speed)?;
         let path = if options.whole_path { path.whole() } else { path };
+        let path = path.fitted(aspect(options.size), options.fit);
+        if path.widening() > 1.0 {
+            let times = path.widening();
+            tracing::info!("{}: its camera is made for wider pictures: the view is {times:.2} times as high, so that nothing is cropped (--fit height crops)", scene.name);
+        }
         let targets = Targets::with_samples(gpu, options.size, options.samples)?;
         let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
         let world = World::with_bounds(gpu, &scene, shading, options.bounds)
@@ -120,8 +126,12 @@ impl Session {
 
     /// Puts moving objects where they are in a frame, and gives what the frame looks through.
     pub fn look(&mut self, frame: usize) -> Result<View> {
-        let shot = self.path.sample(frame, self.options.frames);
-        self.look_through(&shot, frame)
+        self.look_through(&self.shot(frame), frame)
+    }
+
+    /// The camera and the scene's time in a frame.
+    pub fn shot(&self, frame: usize) -> Shot {
+        self.path.sample(frame, self.options.frames)
     }
 
     /// The same through a camera that is on no path; `frame` is what the view is numbered with.
@@ -135,6 +145,7 @@ impl Session {
         if size != self.options.size {
             self.targets = Targets::with_samples(&self.gpu, size, self.options.samples)?;
             self.options.size = size;
+            self.path = self.path.clone().fitted(aspect(size), self.options.fit);
         }
         Ok(())
     }
@@ -159,20 +170,46 @@ impl Session {
         let hash = self.scene_hash();
         let [width, height] = self.options.size;
         let device = self.gpu.info().map(|info| info.cache_key.clone()).unwrap_or_default();
-        let shaders: String = shaders::STAGES
-            .iter()
-            .filter(|stage| stage.name.starts_with("draw/"))
-            .flat_map(|stage| stage.modules)
-            .map(|module| format!("{:x}", module.spirv.len()))
-            .collect();
+        let drawing = drawing();
         let samples = self.options.samples;
         format!(
-            "scene={hash} path={} frames={} size={width}x{height}x{samples} device={device} draw={shaders} shading={:?}",
+            "scene={hash} path={} frames={} size={width}x{height}x{samples} device={device} draw={drawing} shading={:?}",
             self.path.describe(),
             self.options.frames,
             self.shading()
         )
     }
+}
+
+/// Raised whenever the host decides otherwise what is drawn, so that visible sets of an earlier program are not taken for those of this one.
+/// 2: windings of the current transform, uniform alpha, morph targets.
+const DRAWING_VERSION: u32 = 2;
+
+/// Stands for all that decides pictures beside the scene: the shaders that draw or move objects, byte by byte, and the host's part.
+fn drawing() -> String {
+    let mut hash = Sha256::new();
+    hash.update(DRAWING_VERSION.to_le_bytes());
+    let decides = |name: &str| name.starts_with("draw/") || name.starts_with("world/");
+    let modules = shaders::STAGES.iter().filter(|stage| decides(stage.name)).flat_map(|stage| stage.modules);
+    modules.for_each(|module| hash.update(module.spirv));
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Width over height.
+fn aspect([width, height]: [u32; 2]) -> f64 {
+    f64::from(width) / f64::from(height)
+}
+
+/// Opens a path by name, or from a file whose name ends with .json; without a name, the scene's default.
+///
+/// # Errors
+/// An unknown name, a speed out of range, or a file that cannot be read.
+pub fn camera_path(scene: &Scene, name_or_file: Option<&Path>, speed: f64) -> Result<CameraPath> {
+    let is_file = |path: &&Path| path.as_os_str().as_encoded_bytes().ends_with(b".json");
+    Ok(match name_or_file.filter(is_file) {
+        Some(file) => CameraPath::from_file(file, speed)?,
+        None => CameraPath::named(scene, name_or_file.map(Path::to_string_lossy).as_deref(), speed)?,
+    })
 }
 
 /// Where caches lie: `SIGHTLINE_CACHE`, else `XDG_CACHE_HOME/sightline`, else `~/.cache/sightline`, else none.

@@ -96,6 +96,7 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "stepping", rule: "queries: eye from box to box", make: sequences::stepping },
     Family { name: "moving", rule: "two phases: moving bodies", make: sequences::moving },
     Family { name: "bending", rule: "two phases: bodies that bend", make: sequences::bending },
+    Family { name: "morphing", rule: "two phases: bodies that morph", make: sequences::morphing },
     Family { name: "reuse", rule: "two phases: bodies swap places", make: sequences::reuse },
     Family { name: "resize", rule: "two phases: a new size each frame", make: sequences::resize },
     Family { name: "nothing", rule: "skips: no body, or none in view", make: sequences::nothing },

@@ -86,8 +86,11 @@ impl Plan {
         if self.as_given || (drill.seed == 0 && drill.family().name != CHANCE) {
             return subject.clone();
         }
-        let seed =
-            subject.options.method().bytes().fold(drill.seed, |seed, byte| seed.wrapping_mul(31) + u64::from(byte));
+        let seed = subject
+            .options
+            .method()
+            .bytes()
+            .fold(drill.seed, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
         settings::by_chance(subject, &mut Random::new(seed ^ drill.family as u64))
     }
 
@@ -130,7 +133,7 @@ fn one_drill(gpu: &Gpu, plan: &Plan, id: DrillId, outcome: &mut Outcome) -> Resu
         let subject = plan.subject(index, id);
         let mut play = || play(&mut lab, &subject, &drill, &truths, &sets);
         // Every second drill is run again: what was drawn must be drawn again, to the bit.
-        let twice = play().and_then(|once| Ok((if id.seed % 2 == 0 { Some(play()?) } else { None }, once)));
+        let twice = play().and_then(|once| Ok((if id.seed.is_multiple_of(2) { Some(play()?) } else { None }, once)));
         let (tally, faults) = match twice {
             Ok((again, once)) => (tally_of(&once), faults_of(&drill, &once, again.as_deref())),
             Err(error) => (Tally::default(), vec![format!("{error:#}")]),

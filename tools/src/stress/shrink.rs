@@ -62,9 +62,9 @@ pub(super) fn shortened(drill: &Drill, still_fails: &mut dyn FnMut(&Drill) -> bo
     best
 }
 
-/// Without all objects that are not needed, by halves, quarters and so on. Worlds of skeletons stay whole.
+/// Drops all objects that are not needed, by halves, quarters and so on. Worlds of deformed meshes stay whole.
 pub(super) fn thinned(mut best: Drill, still_fails: &mut dyn FnMut(&Drill) -> bool) -> Drill {
-    if !best.case.scene.skinned.is_empty() {
+    if !best.case.scene.deformed.is_empty() {
         return best;
     }
     let mut step = best.case.scene.objects.len().div_ceil(2);

@@ -182,7 +182,7 @@ impl Change {
         match self {
             Change::Size(times) => session.size = session.size.map(|side| (f64::from(side) * times).round() as u32),
             Change::Speed(times) => session.speed *= times,
-            Change::Path(name) => session.path = Some(name.to_owned()),
+            Change::Path(name) => session.path = Some(name.into()),
             Change::Detail(level) => session.detail = level,
             Change::Nothing | Change::NotYet(_) => {}
         }

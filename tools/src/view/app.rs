@@ -10,14 +10,14 @@ use super::reload::HotShaders;
 use super::text::Text;
 use super::ViewOptions;
 use super::{hud, saved, LONGEST_STEP, SCRIPTED_FRAME_S};
-use crate::results::output::say;
+use crate::results::output::{one_line, say};
 use crate::run::capture::{self, CaptureOrder};
 use crate::run::session::SessionOptions;
 use anyhow::{anyhow, Context, Result};
 use engine::{Format, Gpu, GpuOptions, Image, Panel, Shown};
 use scenes::{CameraPath, Scene, Shot};
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::PhysicalSize;
@@ -111,7 +111,7 @@ impl App {
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let [width, height] = self.wish.session.size;
         let attributes = Window::default_attributes()
-            .with_title(format!("sightline: {}", self.wish.session.scene))
+            .with_title(format!("sightline: {}", one_line(&self.wish.session.scene.to_string_lossy())))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = event_loop.create_window(attributes).context("the window system gives no window")?;
         self.inner_size = window.inner_size().into();
@@ -169,6 +169,14 @@ impl App {
         say(&text)?;
         self.told = text;
         Ok(())
+    }
+
+    /// Reports a saved file. A full disk does not close a window that someone watches.
+    fn tell_saved(&mut self, saved: Result<String>) -> Result<()> {
+        match saved {
+            Err(error) if !self.wish.is_scripted() => self.tell(format!("{error:#}")),
+            saved => self.tell(saved?),
+        }
     }
 
     /// One frame: the next step of the script, the camera, the picture, and the window.
@@ -274,29 +282,31 @@ impl App {
             Some(Command::SaveCamera) => {
                 let stage = self.stage.as_ref().context("there is no scene yet")?;
                 let shot = flown(&stage.lab, controls, self.path_frame, self.seconds);
-                let file = saved::path(&self.wish.out, "camera", &[shot])?;
-                self.tell(format!("{}: give it to --path", file.display()))
+                let file = saved::path(&self.wish.out, "camera", &[shot]);
+                self.tell_saved(file.map(|file| format!("{}: give it to --path", file.display())))
             }
             Some(Command::SaveRecording) => {
                 let shots = std::mem::take(&mut self.recorded);
                 if shots.is_empty() {
                     return self.tell("nothing was recorded".to_owned());
                 }
-                let file = saved::path(&self.wish.out, "recording", &shots)?;
-                self.tell(format!(
-                    "{}: {} frames; give it to --path, with --frames {}",
-                    file.display(),
-                    shots.len(),
-                    shots.len()
-                ))
+                let (saved, frames) = (saved::path(&self.wish.out, "recording", &shots), shots.len());
+                if saved.is_err() {
+                    // The recording can be saved again once there is room.
+                    self.recorded = shots;
+                }
+                let told = |file: PathBuf| {
+                    format!("{}: {frames} frames; give it to --path, with --frames {frames}", file.display())
+                };
+                self.tell_saved(saved.map(told))
             }
         }
     }
 
     fn screenshot(&mut self, name: Option<&Path>) -> Result<()> {
         let stage = self.stage.as_ref().context("nothing is shown yet")?;
-        let file = saved::screenshot(&self.wish.out, name, stage.shown.read_shown()?)?;
-        self.tell(file.display().to_string())
+        let file = saved::screenshot(&self.wish.out, name, stage.shown.read_shown()?);
+        self.tell_saved(file.map(|file| file.display().to_string()))
     }
 
     fn scale(&self) -> u32 {

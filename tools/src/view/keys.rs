@@ -100,15 +100,22 @@ pub const STEPS_HELP: &str = "key names (press and release), +KEY (hold), -KEY (
 /// # Errors
 /// A step that is none, by its name.
 pub fn parse_steps(text: &str) -> Result<Vec<Step>> {
-    let steps = text.split(',').map(str::trim).filter(|step| !step.is_empty());
+    let steps: Vec<&str> = text.split(',').map(str::trim).filter(|step| !step.is_empty()).collect();
+    if steps.is_empty() {
+        bail!("--keys names no step; write {STEPS_HELP}");
+    }
     steps
+        .into_iter()
         .map(|step| parse_step(step).with_context(|| format!("--keys: '{step}' is no step; write {STEPS_HELP}")))
         .collect()
 }
 
-fn finite(number: &str) -> Result<f64> {
+/// Farther than any mouse goes, and near enough for a camera's numbers to stay finite.
+const LONGEST_WAY: f64 = 1e6;
+
+fn way_of(number: &str) -> Result<f64> {
     let number: f64 = number.parse()?;
-    number.is_finite().then_some(number).context("a finite number is needed")
+    (number.abs() <= LONGEST_WAY).then_some(number).context("a number from -1000000 to 1000000 is needed")
 }
 
 fn parse_step(step: &str) -> Result<Step> {
@@ -128,9 +135,9 @@ fn parse_step(step: &str) -> Result<Step> {
         None if step == "surface" => Ok(Step::Surface),
         Some(("look", way)) => {
             let (right, down) = way.split_once(':').context("two numbers are needed")?;
-            Ok(Step::Inputs(vec![Input::Look(finite(right)?, finite(down)?)]))
+            Ok(Step::Inputs(vec![Input::Look(way_of(right)?, way_of(down)?)]))
         }
-        Some(("wheel", notches)) => Ok(Step::Inputs(vec![Input::Wheel(finite(notches)?)])),
+        Some(("wheel", notches)) => Ok(Step::Inputs(vec![Input::Wheel(way_of(notches)?)])),
         Some(("size", size)) => {
             let (width, height) = size.split_once('x').context("a width and a height are needed")?;
             let size = [width.parse()?, height.parse()?];
@@ -138,7 +145,7 @@ fn parse_step(step: &str) -> Result<Step> {
             Ok(Step::Resize(size))
         }
         Some(("shot", file)) if !file.is_empty() => Ok(Step::Screenshot(file.to_owned())),
-        _ => bail!("unknown"),
+        _ => bail!("there is no such key or step"),
     }
 }
 
@@ -167,9 +174,22 @@ mod tests {
         assert_eq!(steps[4..6], [Step::Inputs(vec![Input::Look(30.0, -4.5)]), Step::Inputs(vec![Input::Wheel(-2.0)])]);
         assert_eq!(steps[6..9], [Step::Resize([640, 360]), Step::Minimise(true), Step::Minimise(false)]);
         assert_eq!(steps[9..], [Step::Surface, Step::Screenshot("a.png".to_owned())]);
-        for bad in ["Z", "+", "+X", "look=3", "look=1:inf", "wheel=nan", "size=3", "size=100000x10", "shot=", "shut=a"]
-        {
+        for bad in [
+            "Z",
+            "+",
+            "+X",
+            "look=3",
+            "look=1:inf",
+            "wheel=nan",
+            "wheel=1e300",
+            "size=3",
+            "size=0x9",
+            "size=100000x10",
+            "shot=",
+            "shut=a",
+        ] {
             let error = format!("{:#}", parse_steps(bad).unwrap_err());
+            assert!(parse_steps(" , ").unwrap_err().to_string().contains("names no step"));
             assert!(error.contains(&format!("'{bad}' is no step; write key names")), "{error}");
         }
     }

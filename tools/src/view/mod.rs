@@ -14,6 +14,7 @@ mod reload;
 mod saved;
 mod text;
 
+use crate::results::files::{check_file, check_folder};
 use crate::run::bench::make_folder;
 use crate::run::capture::CaptureOrder;
 use crate::run::session::SessionOptions;
@@ -36,8 +37,8 @@ const LARGEST_SIDE: u32 = 32767;
 /// Can a window have this size?
 fn check_size(size: [u32; 2]) -> Result<()> {
     let [width, height] = size;
-    if width.max(height) > LARGEST_SIDE {
-        bail!("{width}x{height}: a window has at most {LARGEST_SIDE} pixels a side");
+    if width.min(height) == 0 || width.max(height) > LARGEST_SIDE {
+        bail!("{width}x{height}: a window has at most {LARGEST_SIDE} pixels a side, and at least 1");
     }
     Ok(())
 }
@@ -76,6 +77,7 @@ pub fn run(wish: ViewOptions) -> Result<()> {
     let options = &wish.session;
     let scene_options = scenes::SceneOptions { scale: options.scale, seed: options.seed, detail: options.detail };
     check_size(options.size).context("--size")?;
+    check_places(&wish)?;
     let event_loop = event_loop()?;
     let scene = scenes::open(&options.scene, &scene_options)?;
     if wish.is_scripted() && wish.capture.is_some_and(|frame| frame >= wish.session.frames) {
@@ -88,6 +90,17 @@ pub fn run(wish: ViewOptions) -> Result<()> {
     let mut app = App::new(wish, scene, order.transpose()?);
     event_loop.run_app(&mut app).context("the window system stopped")?;
     app.outcome()
+}
+
+/// Checks before the window opens that pictures and paths can be saved.
+fn check_places(wish: &ViewOptions) -> Result<()> {
+    check_folder(&wish.out)?;
+    let Some(file) = &wish.screenshot else { return Ok(()) };
+    match file.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
+        // The folder will be made.
+        Some(parent) => Ok(check_folder(parent)?),
+        None => Ok(check_file(file)?),
+    }
 }
 
 /// The connection to the window system.

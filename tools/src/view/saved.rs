@@ -23,7 +23,7 @@ pub fn screenshot(folder: &Path, name: Option<&Path>, shown: Option<([u32; 2], V
         Some(name) => name.to_owned(),
         None => free_name(folder, "screenshot", "png")?,
     };
-    if let Some(parent) = file.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+    if let Some(parent) = file.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
         make_folder(parent)?;
     }
     Picture { width, height, pixels }.write(&file)?;

@@ -106,6 +106,8 @@ struct Iterative {
     ahead: Buffer<u32>,
     /// That list serves the next frame too.
     ahead_holds: bool,
+    /// The world's winding revision when that list was written.
+    ahead_winding: u64,
     steps: Steps,
     seeds: Option<Seeds>,
     pyramid: Option<Pyramid>,
@@ -133,6 +135,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
         seen: Buffer::new(gpu, "hzb.seen", world.len(), Placement::Storage)?,
         ahead: Buffer::new(gpu, "hzb.ahead", world.len(), Placement::Storage)?,
         ahead_holds: false,
+        ahead_winding: 0,
         steps: Steps::new(gpu, world, options)?,
         seeds: Seeds::new(gpu, world, options)?,
         pyramid: None,
@@ -186,7 +189,10 @@ impl Method for Iterative {
         }
         self.steps.measure(f, world, self.ranges); // 2. where each block of objects lies along the view
         let in_one = self.ranges == 1 && self.first_step == 0;
-        let same_list = in_one && self.ahead_holds && !casts;
+        // Commands of the list draw the wrong side of an object that has turned inside out since.
+        let same_winding =
+            std::mem::replace(&mut self.ahead_winding, world.winding_revision()) == world.winding_revision();
+        let same_list = in_one && self.ahead_holds && same_winding && !casts;
         let ahead = in_one.then(|| self.ahead.all());
         if in_one && !same_list {
             f.fill("hzb/clear_ahead", &self.ahead, 0);

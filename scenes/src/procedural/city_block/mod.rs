@@ -100,6 +100,7 @@ fn street_camera(walk: &Walk) -> Camera {
         name: "street".into(),
         pose: Pose::looking_at(walk.points[0], walk.points[1]),
         projection: Projection::Perspective { fov_y: 60f64.to_radians(), near: 0.1, far: Some(2000.0) },
+        aspect: None,
         node: None,
     }
 }

@@ -1,11 +1,12 @@
 //! `sightline bench`.
 
-use super::say;
+use super::{say, say_json, typed, warn};
 use crate::cli::BenchArgs;
 use crate::report::{self, Gallery};
+use crate::results::output::one_line;
 use crate::results::trace;
 use crate::results::{flares_table, parts_table, stages_table, table, Results};
-use crate::run::bench::{bench_watched, make_folder, write, BenchOptions, Seen};
+use crate::run::bench::{bench_watched, ready, write, BenchOptions, Seen};
 use crate::run::capture::CaptureOrder;
 use crate::run::methods::{parse_methods, particular_methods, Chosen};
 use crate::run::session::{cache_folder, Session};
@@ -16,15 +17,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     // All that can be wrong with the command line is found before anything slow is done.
     let mut methods = parse_methods(&arguments.methods.method, &arguments.methods.sets())?;
-    make_folder(&arguments.out)?;
-    let capture = capture(arguments)?;
     let options = arguments.flares.of(arguments.samples.of(arguments.scene.session()?));
+    ready(&arguments.out)?;
+    let capture = capture(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), options)?;
     if arguments.methods.method == "all" {
         let (taken, left_out) = particular_methods(&session.scene, &arguments.methods.sets())?;
         methods.extend(taken);
         let refused = without_refusing(&mut methods, &session);
-        left_out.iter().chain(&refused).for_each(|line| eprintln!("{line}"));
+        left_out.iter().chain(&refused).for_each(|line| warn(line));
     }
     let bar = Bar::new(&session)?;
     let options = BenchOptions {
@@ -34,7 +35,7 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         pairs: Vec::new(),
         capture,
         cache: cache_folder(),
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: typed(),
     };
     let mut gallery = gallery(arguments, &options, &session);
     let mut watch = |seen: Seen<'_>| match &mut gallery {
@@ -44,11 +45,11 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
     let mut progress = |what: &str, done: usize, all: usize| bar.show(what, done, all);
     let results = bench_watched(&mut session, options, &mut progress, &mut watch)?;
     bar.clear();
-    write(&results, &arguments.out)?;
-    // What was measured is shown even where the report cannot be written.
-    let shown = write_views(arguments, &results, gallery.as_ref());
-    print(arguments, &results)?;
-    shown
+    // Results are printed even if they cannot be written, for example to a disk that is full by now.
+    let written = write(&results, &arguments.out);
+    let written = written.and(write_views(arguments, &results, gallery.as_ref()));
+    let printed = print(arguments, &results, written.is_ok());
+    written.and(printed)
 }
 
 /// Takes those away that need one sample a pixel where there are several; a line for each.
@@ -85,9 +86,9 @@ fn write_views(arguments: &BenchArgs, results: &Results, gallery: Option<&Galler
     Ok(trace?)
 }
 
-fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
+fn print(arguments: &BenchArgs, results: &Results, written: bool) -> Result<()> {
     if arguments.json {
-        return say(&serde_json::to_string_pretty(results)?);
+        return say_json(results);
     }
     say(&table(results))?;
     match flares_table(results) {
@@ -100,6 +101,9 @@ fn print(arguments: &BenchArgs, results: &Results) -> Result<()> {
             say(&parts_table(method))?;
             method.choices.iter().try_for_each(|choice| say(choice))?;
         }
+    }
+    if !written {
+        return Ok(());
     }
     let report = if arguments.no_report { "" } else { ", report.html" };
     say(&format!("results.json, results.csv, trace.json{report}: in {}", arguments.out.display()))
@@ -127,7 +131,7 @@ impl Bar {
     pub(super) fn show(&self, what: &str, done: usize, all: usize) {
         self.0.set_length(all as u64);
         self.0.set_position(done as u64);
-        self.0.set_message(what.to_owned());
+        self.0.set_message(one_line(what).into_owned());
     }
 
     /// Takes the bar away.

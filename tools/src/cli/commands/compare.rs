@@ -1,6 +1,6 @@
 //! `sightline compare`.
 
-use super::say;
+use super::{say, say_json};
 use crate::cli::CompareArgs;
 use crate::compare::{compare, gates_text, run_lines, text, Comparison, Outcome};
 use crate::results::Results;
@@ -18,9 +18,9 @@ pub struct GatesTrue {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Report<'a> {
-    a: Option<&'a Path>,
-    b: &'a Path,
+struct Report {
+    a: Option<String>,
+    b: String,
     comparison: Option<Comparison>,
     gates: Vec<Outcome>,
 }
@@ -38,14 +38,15 @@ pub fn run(arguments: &CompareArgs) -> Result<()> {
         [b] => (None, b.as_path()),
         _ => bail!("name one file or two"),
     };
-    let a = path_a.map(Results::read_json).transpose()?;
-    let b = Results::read_json(path_b)?;
+    let a = path_a.map(Results::read_plain).transpose()?;
+    let b = Results::read_plain(path_b)?;
     let comparison = a.as_ref().map(|a| compare(a, &b, arguments.options())).transpose()?;
     let check = arguments.fail_if.iter().map(|gate| gate.check(a.as_ref(), &b, comparison.as_ref()));
     let gates = check.collect::<Result<Vec<_>>>()?;
     let (failed, of) = (gates.iter().filter(|gate| gate.failed).count(), gates.len());
     if arguments.json {
-        say(&serde_json::to_string_pretty(&Report { a: path_a, b: path_b, comparison, gates })?)?;
+        let name = |path: &Path| path.display().to_string();
+        say_json(&Report { a: path_a.map(name), b: name(path_b), comparison, gates })?;
     } else {
         for (name, path, results) in [("A", path_a, a.as_ref()), ("B", Some(path_b), Some(&b))] {
             if let (Some(path), Some(results)) = (path, results) {

@@ -29,10 +29,11 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
                 match (gpu.timer_mode(), arguments.timer) {
                     (TimerMode::Off, _) => "stages are not timed",
                     (_, Some(_)) => "by --timer",
-                    (_, None) => "by self-check",
+                    (_, None) => "by the kind of device",
                 }
             ),
         ),
+        ("timer check", timer_check(&gpu)?),
         ("timestamp", format!("{} ns a tick, {} bits", info.timestamp_ns, info.timestamp_bits)),
         ("subgroup", format!("{} lanes", info.subgroup_size)),
         ("largest image", format!("{0} x {0} pixels", info.max_image_px)),
@@ -52,6 +53,19 @@ pub fn run(arguments: &DeviceArgs) -> Result<()> {
         say(&format!("{:<15} {}: {}", if feature.present { "has" } else { "lacks" }, feature.name, feature.why))?;
     }
     say("methods         all methods run on this device")
+}
+
+/// Measures whether timestamps alone tell stages apart. A busy machine can change the answer.
+fn timer_check(gpu: &Gpu) -> Result<String> {
+    Ok(match (gpu.check_timers()?, gpu.timer_mode()) {
+        (TimerMode::Off, _) => "none: the device has no timestamps".to_owned(),
+        (TimerMode::Plain, _) => "timestamps alone charge each stage with its own work (measured now)".to_owned(),
+        (TimerMode::Split, TimerMode::Plain) => {
+            "timestamps alone charge stages with the work of others (measured now): if it stays so, use --timer split"
+                .to_owned()
+        }
+        (TimerMode::Split, _) => "timestamps alone charge stages with the work of others (measured now)".to_owned(),
+    })
 }
 
 /// What `--samples` can be, and which methods need 1 because of how the device takes depths.

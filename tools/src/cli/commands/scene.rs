@@ -2,7 +2,8 @@
 
 use super::say;
 use crate::cli::{SceneAction, SceneArgs, SceneChoice};
-use crate::results::files::write_atomically;
+use crate::results::files::{check_file, write_atomically};
+use crate::run::session::camera_path;
 use anyhow::Result;
 use scenes::procedural::SCENES;
 use scenes::{CameraPath, Scene, SceneOptions};
@@ -27,11 +28,8 @@ fn list() -> Result<()> {
 
 fn open(choice: &SceneChoice) -> Result<(Scene, CameraPath)> {
     let SceneChoice { scale, seed, detail_level: detail, .. } = *choice;
-    let scene = scenes::open(choice.one_scene()?, &SceneOptions { scale, seed, detail })?;
-    let path = match choice.path.as_deref() {
-        Some(file) if file.ends_with(".json") => CameraPath::from_file(Path::new(file), choice.speed)?,
-        name => CameraPath::named(&scene, name, choice.speed)?,
-    };
+    let scene = scenes::open(&choice.one_scene()?, &SceneOptions { scale, seed, detail })?;
+    let path = camera_path(&scene, choice.path.as_deref(), choice.speed)?;
     let path = if choice.whole_path { path.whole() } else { path };
     Ok((scene, path))
 }
@@ -54,6 +52,7 @@ fn show(choice: &SceneChoice) -> Result<()> {
 }
 
 fn export(choice: &SceneChoice, out: &Path) -> Result<()> {
+    check_file(out)?;
     let (scene, path) = open(choice)?;
     let bytes = scenes::export_glb(&scene, Some(&path), choice.frames as usize)?;
     write_atomically(out, |file| file.write_all(&bytes))?;

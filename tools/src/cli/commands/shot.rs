@@ -5,6 +5,7 @@ use crate::cli::{ShotArgs, Show};
 use crate::pictures::boxes_view;
 use crate::pictures::png_out::{DepthScale, Picture};
 use crate::pictures::warp_view::{self, Warped};
+use crate::results::files::{check_file, check_folder};
 use crate::run::capture::{self, CaptureOrder};
 use crate::run::methods::parse_methods;
 use crate::run::session::{cache_folder, Session};
@@ -39,14 +40,17 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
             arguments.samples.samples
         );
     }
-    let mut order = order(arguments)?;
     let opened = arguments.flares.of(arguments.samples.of(arguments.scene.session()?));
+    let mut order = order(arguments)?;
     let mut session = Session::open(&arguments.device.gpu(), opened)?;
     let visible = match entry.id {
         "ref" => Some(RunTruth::visible_sets(&mut session, cache_folder().as_deref(), || ())?),
         _ => None,
     };
     let mut contender = Contender::new(&session, entry, options, &visible)?;
+    // Before anything is drawn.
+    folder(arguments)?;
+    check_file(&arguments.out)?;
     let label = contender.label();
     for frame in arguments.frame.saturating_sub(LEAD_FRAMES)..arguments.frame {
         let gpu = session.gpu.clone();
@@ -58,7 +62,6 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
             Some(shown) => warp_picture(&mut session, &mut contender, arguments.frame, warp, shown),
             None => picture(&mut session, &mut contender, arguments),
         })?;
-    folder(arguments)?;
     picture.write(&arguments.out)?;
     say(&format!("{}{caption}", arguments.out.display()))
 }
@@ -66,6 +69,9 @@ pub fn run(arguments: &ShotArgs) -> Result<()> {
 /// The folder of the picture, which is made if it is not there.
 fn folder(arguments: &ShotArgs) -> Result<&Path> {
     let folder = arguments.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        check_folder(folder)?;
+    }
     std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot make this folder", folder.display()))?;
     Ok(folder)
 }

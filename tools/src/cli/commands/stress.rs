@@ -1,7 +1,8 @@
 //! `sightline stress`.
 
-use super::say;
+use super::{say, say_json, warn};
 use crate::cli::StressArgs;
+use crate::results::files::check_folder;
 use crate::run::methods::parse_methods;
 use crate::stress::catalogue::{DrillId, CHANCE, FAMILIES};
 use crate::stress::refusals::refusal_faults;
@@ -20,6 +21,7 @@ const SAVED_FAILURES: usize = 5;
 /// Runs the catalogue, prints its table, and fails if a method did.
 pub fn run(arguments: &StressArgs) -> Result<()> {
     let plan = plan(arguments)?;
+    check_folder(&arguments.out)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let bar = ProgressBar::new(plan.drills.len() as u64);
     bar.set_style(ProgressStyle::with_template("{msg:28} {wide_bar} {pos}/{len} {eta}")?);
@@ -34,12 +36,10 @@ pub fn run(arguments: &StressArgs) -> Result<()> {
     let outcome = tracing::subscriber::with_default(quiet, || run_plan(&gpu, &plan, &mut progress))?;
     bar.finish_and_clear();
     let (refused, accepted) = refusal_faults();
-    say(&if arguments.json {
-        serde_json::to_string_pretty(&as_json(&plan, &outcome))?
+    if arguments.json {
+        say_json(&as_json(&plan, &outcome))?;
     } else {
-        table(&plan, &outcome)
-    })?;
-    if !arguments.json {
+        say(&table(&plan, &outcome))?;
         say(&format!(
             "{} of {refused} scenes without a meaning were refused by the name of their object",
             refused - accepted.len()
@@ -51,7 +51,7 @@ pub fn run(arguments: &StressArgs) -> Result<()> {
         wrong.push(told(arguments, &gpu, &plan, failure, index)?);
     }
     if !wrong.is_empty() {
-        wrong.iter().for_each(|line| eprintln!("{line}"));
+        wrong.iter().for_each(|line| warn(line));
         bail!("{} failures, see above", wrong.len());
     }
     Ok(())
@@ -65,7 +65,7 @@ fn plan(arguments: &StressArgs) -> Result<Plan> {
     };
     if arguments.method == "all-exact" {
         let ids: Vec<_> = PARTICULAR.iter().map(|entry| entry.id).collect();
-        eprintln!("left out: {}: its worlds are no cities and have no cells", ids.join(", "));
+        warn(&format!("left out: {}: its worlds are no cities and have no cells", ids.join(", ")));
     }
     let subjects = parse_methods(&methods, &arguments.set)?;
     let subjects = subjects.into_iter().map(|(entry, options)| Subject { options, make: entry.make }).collect();
@@ -83,7 +83,7 @@ fn plan(arguments: &StressArgs) -> Result<Plan> {
 pub fn all_drills(first: u64, seeds: u64, cases: u64) -> Vec<DrillId> {
     let of_family = |(family, entry): (usize, &crate::stress::catalogue::Family)| {
         let count = if entry.name == CHANCE { cases } else { seeds };
-        (first..first + count).map(move |seed| DrillId { family, seed })
+        (0..count).map(move |step| DrillId { family, seed: first.wrapping_add(step) })
     };
     FAMILIES.iter().enumerate().flat_map(of_family).collect()
 }
@@ -104,9 +104,12 @@ fn told(arguments: &StressArgs, gpu: &Gpu, plan: &Plan, failure: &Failure, index
         // The settings are in drill.json: all of them would be too long for a file system.
         let name = format!("{index}-{}-{drill}", subject.options.method()).replace('/', "-");
         let folder = arguments.out.join("failures").join(name);
-        save::save(gpu, subject, &small, faults, &folder)?;
         let (objects, frames) = (small.case.scene.objects.len(), small.case.shots.len());
-        write!(text, "\n  small: {objects} objects, {frames} frames, in {}", folder.display())?;
+        // A full disk must not hide the other failures.
+        match save::save(gpu, subject, &small, faults, &folder) {
+            Ok(()) => write!(text, "\n  small: {objects} objects, {frames} frames, in {}", folder.display())?,
+            Err(error) => write!(text, "\n  small: {objects} objects, {frames} frames, not saved: {error:#}")?,
+        }
     }
     Ok(text)
 }

@@ -1,15 +1,16 @@
 //! `sightline bench --sweep`.
 
-use super::say;
+use super::{say, say_json, typed};
 use crate::cli::BenchArgs;
 use crate::measures::pareto;
 use crate::report;
+use crate::results::files::check_folder;
 use crate::results::trace;
 use crate::results::{table, Results};
-use crate::run::bench::{make_folder, write};
+use crate::run::bench::{ready, write};
 use crate::run::methods::{parse_methods, parse_setting};
 use crate::run::session::Session;
-use crate::run::sweep::{run as run_cells, Sweep, SweepPlan};
+use crate::run::sweep::{run as run_cells, Kept, Sweep, SweepPlan};
 use anyhow::{Context, Result};
 use culling::{Entry, Options};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,8 +18,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Runs the sweep, writes what `bench` writes, and prints the front of time against error.
 pub fn run(arguments: &BenchArgs) -> Result<()> {
     let plan = plan(arguments)?;
-    make_folder(&arguments.out)?;
-    let mut session = Session::open(&arguments.device.gpu(), arguments.samples.of(arguments.scene.session()?))?;
+    let options = arguments.samples.of(arguments.scene.session()?);
+    ready(&arguments.out)?;
+    check_folder(&plan.folder)?;
+    let mut session = Session::open(&arguments.device.gpu(), options)?;
     let bar = ProgressBar::new(1);
     bar.set_style(ProgressStyle::with_template("cell {pos} of {len}  {msg:18} {wide_bar} {eta} left")?);
     let (results, kept) = run_cells(&mut session, &plan, &mut |cell, all, what| {
@@ -28,32 +31,40 @@ pub fn run(arguments: &BenchArgs) -> Result<()> {
         Ok(())
     })?;
     bar.finish_and_clear();
-    write(&results, &arguments.out)?;
+    let written = write(&results, &arguments.out);
     let trace = trace::write(&results, &arguments.out.join("trace.json"));
     let report =
         if arguments.no_report { Ok(()) } else { report::write(&results, None, &arguments.out.join("report.html")) };
+    let written = written.and(trace.map_err(Into::into)).and(report);
+    // Results are printed even if they cannot be written, for example to a disk that is full by now.
+    let printed = print(arguments, &results, kept, written.is_ok());
+    written.and(printed)
+}
+
+fn print(arguments: &BenchArgs, results: &Results, kept: Kept, written: bool) -> Result<()> {
     if arguments.json {
-        say(&serde_json::to_string_pretty(&results)?)?;
-    } else {
-        say(&table(&results))?;
-        say(&front(&results))?;
-        say(&format!(
-            "{} of {} cells were there already; all results are in {}",
-            kept.kept,
-            kept.all,
-            arguments.out.display()
-        ))?;
+        return say_json(results);
     }
-    trace?;
-    report
+    say(&table(results))?;
+    say(&front(results))?;
+    let place = match written {
+        true => format!("; all results are in {}", arguments.out.display()),
+        false => String::new(),
+    };
+    say(&format!("{} of {} cells were there already{place}", kept.kept, kept.all))
 }
 
 fn plan(arguments: &BenchArgs) -> Result<SweepPlan> {
     let methods = if arguments.methods.method == "all" { "ref" } else { &arguments.methods.method };
     let sets = &arguments.methods.sets();
     let base = parse_methods(methods, sets)?;
-    let sweeps = arguments.sweeps.sweep.iter().flat_map(|text| text.split_whitespace());
-    let sweeps = sweeps.map(Sweep::parse).collect::<Result<Vec<_>>>()?;
+    // An empty text is parsed as one word, so that it is refused.
+    let words = |text: &'_ String| match text.trim().is_empty() {
+        true => vec![text.trim().to_owned()],
+        false => text.split_whitespace().map(str::to_owned).collect(),
+    };
+    let sweeps = arguments.sweeps.sweep.iter().flat_map(words);
+    let sweeps = sweeps.map(|text| Sweep::parse(&text)).collect::<Result<Vec<_>>>()?;
     let settings = Sweep::settings(&sweeps, &|entry| with_sets(entry, sets))?;
     let baseline =
         ["ref", "frustum", "none"].iter().find_map(|id| base.iter().find(|(entry, _)| entry.id == *id).cloned());
@@ -63,7 +74,7 @@ fn plan(arguments: &BenchArgs) -> Result<SweepPlan> {
         settings,
         warmup: arguments.warmup(None),
         metrics: !arguments.no_metrics,
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: typed(),
         folder: arguments.out.join("cells"),
         fresh: arguments.sweeps.fresh,
     })

@@ -1,10 +1,10 @@
 //! `sightline bench --table`: a published table, or one of ours, on several scenes.
 
-use super::{bench::Bar, say};
+use super::{bench::Bar, say, typed};
 use crate::cli::BenchArgs;
-use crate::results::files::write_atomically;
+use crate::results::files::{check_file, check_folder, write_atomically};
 use crate::results::{parts_table, stages_table, Results};
-use crate::run::bench::{bench, header, write, BenchOptions};
+use crate::run::bench::{bench, header, make_folder, write, BenchOptions};
 use crate::run::session::{cache_folder, Session, SessionOptions};
 use crate::run::truth::RunTruth;
 use crate::tables::warp_errors::{warp_errors, write_csv};
@@ -30,10 +30,13 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
         );
     }
     let sessions = sessions(table, arguments)?;
+    check_places(table, &plan, &sessions, &arguments.out)?;
     let gpu = Gpu::open(&arguments.device.gpu())?;
     let mut scenes = Vec::new();
     let warmup = arguments.warmup(table.warmup());
     let (mut done, all) = (0, sessions.len() * plan.runs.len());
+    // The first error of writing a file. The runs go on, and their table is printed.
+    let mut written = Ok(());
     for (folder, session) in sessions {
         let mut runs = Vec::new();
         for planned in &plan.runs {
@@ -42,16 +45,35 @@ pub fn run(arguments: &BenchArgs, id: &str) -> Result<()> {
             done += 1;
             let ran =
                 run_planned(&gpu, arguments, session, (table, planned), (&format!("run {done} of {all}"), warmup))?;
-            let folder = arguments.out.join(&folder);
-            save(&ran, &planned.change.folder().map_or(folder.clone(), |below| folder.join(below)))?;
+            written = written.and(save(&ran, &folder_of(&arguments.out, &folder, planned)));
             explain(arguments, &ran.results)?;
             runs.push(ran);
         }
         scenes.push(runs);
         // After each scene, so that what a long run has come to is there if it is stopped.
-        write_text(table, &plan, &scenes, &arguments.out)?;
+        written = written.and(write_text(table, &plan, &scenes, &arguments.out));
     }
-    finish(table, &scenes, &arguments.out, &tables::text(table, &plan, &scenes))
+    say(&tables::text(table, &plan, &scenes))?;
+    written?;
+    finish(table, &scenes, &arguments.out)
+}
+
+/// The folder of one run of a scene.
+fn folder_of(out: &Path, scene: &str, planned: &PlannedRun) -> PathBuf {
+    let folder = out.join(scene);
+    planned.change.folder().map_or(folder.clone(), |below| folder.join(below))
+}
+
+/// Checks before the runs that their files can be written.
+fn check_places(table: &Table, plan: &Plan, sessions: &[(String, SessionOptions)], out: &Path) -> Result<()> {
+    make_folder(out)?;
+    check_file(&text_file(table, out))?;
+    for (scene, _) in sessions {
+        for planned in &plan.runs {
+            check_folder(&folder_of(out, scene, planned))?;
+        }
+    }
+    Ok(())
 }
 
 fn run_planned(
@@ -61,9 +83,9 @@ fn run_planned(
     (table, planned): (&Table, &PlannedRun),
     (place, warmup): (&str, usize),
 ) -> Result<Ran> {
-    let name = format!("{place}: {}", session.scene);
+    let name = format!("{place}: {}", session.scene.display());
     let mut session = Session::on(gpu, session)?;
-    let command = std::env::args().collect::<Vec<_>>().join(" ");
+    let command = typed();
     let bar = Bar::new(&session)?;
     let mut progress = |what: &str, done: usize, all: usize| bar.show(&format!("{name}: {what}"), done, all);
     let mut warps = BTreeMap::new();
@@ -109,8 +131,7 @@ fn save(ran: &Ran, folder: &Path) -> Result<()> {
         write(&ran.results, folder)?;
     }
     if !ran.warps.is_empty() {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("{}: cannot make this folder; choose another with --out", folder.display()))?;
+        make_folder(folder)?;
         write_csv(&ran.warps, &folder.join("warps.csv"))?;
     }
     Ok(())
@@ -133,8 +154,7 @@ fn text_file(table: &Table, out: &Path) -> PathBuf {
     out.join(format!("table-{}.txt", table.id))
 }
 
-fn finish(table: &Table, scenes: &[Vec<Ran>], out: &Path, text: &str) -> Result<()> {
-    say(text)?;
+fn finish(table: &Table, scenes: &[Vec<Ran>], out: &Path) -> Result<()> {
     let files = if scenes.iter().flatten().any(|ran| !ran.warps.is_empty()) {
         "each scene's warps.csv"
     } else {
@@ -146,20 +166,22 @@ fn finish(table: &Table, scenes: &[Vec<Ran>], out: &Path, text: &str) -> Result<
 /// Each scene's folder and session.
 fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, SessionOptions)>> {
     let choice = &arguments.scene;
-    let scenes = match choice.scenes() {
-        named if named.is_empty() => table.scenes(),
+    let scenes = match choice.scenes()? {
+        named if named.is_empty() => table.scenes().into_iter().map(PathBuf::from).collect(),
         named => named,
     };
     let mut sessions: Vec<(String, SessionOptions)> = Vec::new();
     for scene in scenes {
-        let folder = folder(scene).with_context(|| format!("--scene {scene}: not the name of a scene or file"))?;
+        let shown = scene.display();
+        let folder = folder(&scene).with_context(|| format!("--scene {shown}: not the name of a scene or file"))?;
         if let Some((_, other)) = sessions.iter().find(|(earlier, _)| *earlier == folder) {
-            bail!("--scene: {scene} and {} would both be written to the folder {folder}; run them apart", other.scene);
+            let other = other.scene.display();
+            bail!("--scene: {shown} and {other} would both be written to the folder {folder}; run them apart");
         }
-        let mut session = arguments.samples.of(choice.session_of(scene));
+        let mut session = arguments.samples.of(choice.session_of(&scene));
         if session.path.is_none() {
             let (path, whole) = table.path();
-            session.path = Some(path.to_owned());
+            session.path = Some(path.into());
             session.whole_path |= whole;
         }
         sessions.push((folder, session));
@@ -168,8 +190,8 @@ fn sessions(table: &Table, arguments: &BenchArgs) -> Result<Vec<(String, Session
 }
 
 /// A scene's name, or its file's without folders and ending.
-fn folder(scene: &str) -> Option<String> {
-    Path::new(scene).file_stem().map(|stem| stem.to_string_lossy().into_owned())
+fn folder(scene: &Path) -> Option<String> {
+    scene.file_stem().map(|stem| stem.to_string_lossy().into_owned())
 }
 
 #[cfg(test)]
@@ -198,13 +220,17 @@ mod tests {
         assert_eq!(folders(&all), ["fantasy", "factory", "radial-city", "satellite"]);
         assert_eq!(folders(&sessions("--table woc-3").unwrap()), ["city-block", "balloons", "powerplant", "monsters"]);
         assert_eq!(folders(&sessions("--table tog-2").unwrap()), ["monsters"], "of others nothing is published");
-        assert!(all.iter().all(|(_, session)| session.path.as_deref() == Some("closing-in") && session.whole_path));
+        assert!(all
+            .iter()
+            .all(|(_, session)| session.path.as_deref() == Some(Path::new("closing-in")) && session.whole_path));
         let warped = sessions("--table woc-1").unwrap();
-        assert!(warped.iter().all(|(_, session)| session.path.as_deref() == Some("walk") && !session.whole_path));
+        assert!(warped
+            .iter()
+            .all(|(_, session)| session.path.as_deref() == Some(Path::new("walk")) && !session.whole_path));
         assert!(sessions("--table woc-1 --whole-path").unwrap()[0].1.whole_path);
         let (folder, walk) = sessions("--table eovc-2 --scene a/model.glb --path walk").unwrap().remove(0);
-        assert_eq!((folder.as_str(), walk.scene.as_str()), ("model", "a/model.glb"));
-        assert_eq!((walk.path.as_deref(), walk.whole_path), (Some("walk"), false));
+        assert_eq!((folder.as_str(), walk.scene.as_path()), ("model", Path::new("a/model.glb")));
+        assert_eq!((walk.path.as_deref(), walk.whole_path), (Some(Path::new("walk")), false));
     }
 
     #[test]

@@ -84,7 +84,10 @@ pub fn run(
             None => {
                 progress(index, all, "starts")?;
                 let results = finished(session, plan, cell, &mut |what| progress(index, all, what))?;
-                results.write_json(&file)?;
+                // A full disk must not end the sweep: its table is still printed.
+                if let Err(error) = results.write_json(&file) {
+                    tracing::warn!("{error}; this cell will be run again");
+                }
                 results
             }
         };
@@ -131,11 +134,12 @@ fn finished(
     Ok(results)
 }
 
-/// Everything on which a cell's numbers depend.
+/// Everything on which a cell's numbers depend. Nothing that is measured at start, as that could differ the next time.
 fn key(session: &Session, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
     let what = serde_json::to_string(&header(session, ""))?;
     let labels: Vec<String> = cell.iter().map(|(_, options)| options.label()).collect();
-    let text = format!("{what}\n{}\n{}\n{}", labels.join("\n"), plan.warmup, plan.metrics);
+    let shading = session.shading();
+    let text = format!("{what}\n{}\n{}\n{}\n{shading:?}", labels.join("\n"), plan.warmup, plan.metrics);
     let digest = Sha256::digest(text.as_bytes());
     Ok(digest.iter().take(12).map(|byte| format!("{byte:02x}")).collect())
 }

@@ -63,9 +63,18 @@ pub fn moving(random: &mut Random, bodies: usize) -> Drill {
 
 /// Skeletons bend bodies among walls, which stay as they are for a frame, go on, and are elsewhere at once.
 pub fn bending(random: &mut Random, bodies: usize) -> Drill {
-    let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == "tentacles").unwrap();
     // At scale 1 it has 240 bodies, and a wall for every second.
-    let scale = bodies as f64 / 360.0;
+    deforming(random, "tentacles", bodies as f64 / 360.0)
+}
+
+/// Morph targets displace bodies among walls, and skeletons bend a third of them too.
+pub fn morphing(random: &mut Random, bodies: usize) -> Drill {
+    // At scale 1 it has 180 bodies, and a wall for every second.
+    deforming(random, "jellyfish", bodies as f64 / 270.0)
+}
+
+fn deforming(random: &mut Random, scene: &str, scale: f64) -> Drill {
+    let entry = scenes::procedural::SCENES.iter().find(|entry| entry.name == scene).unwrap();
     let scene = (entry.make)(&scenes::SceneOptions { scale, seed: random.bits(), ..Default::default() });
     let side = 20.0 * (scale * random.range(0.3, 1.0)).sqrt();
     let eye = DVec3::new(random.range(-0.6, 0.6) * side, random.range(0.5, 4.0), side);

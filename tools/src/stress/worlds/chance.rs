@@ -77,19 +77,19 @@ fn flats(maker: &mut Maker, random: &mut Random, [cube, square, ..]: &[u32; 4], 
     let (at, mut size) = (somewhere(random), DVec3::splat(random.decade(0.1, 3.0)));
     size[random.below(3)] = 0.0;
     let place = if random.below(2) == 0 { sized(at, size) } else { turned(random, at, size) };
-    maker.place(if body % 2 == 0 { *cube } else { *square }, place);
+    maker.place(if body.is_multiple_of(2) { *cube } else { *square }, place);
 }
 
 /// Lines and points.
 fn specks(maker: &mut Maker, random: &mut Random, [_, _, wires, dust]: &[u32; 4], body: usize) {
     let (at, size) = (somewhere(random), DVec3::splat(random.decade(1e-3, 1.0)));
     let place = turned(random, at, size);
-    maker.place(if body % 2 == 0 { *wires } else { *dust }, place);
+    maker.place(if body.is_multiple_of(2) { *wires } else { *dust }, place);
 }
 
 /// Wires as large as the world: their boxes hold the eye.
 fn shells(maker: &mut Maker, random: &mut Random, [_, _, wires, _]: &[u32; 4], body: usize) {
-    if body % 10 == 0 {
+    if body.is_multiple_of(10) {
         let (at, size) = (0.3 * somewhere(random), DVec3::splat(random.range(5.0, 20.0)));
         let place = turned(random, at, size);
         maker.place(*wires, place);

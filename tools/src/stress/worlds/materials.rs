@@ -25,7 +25,8 @@ fn mapped(mesh: Mesh) -> Mesh {
 
 /// The same with a colour at each vertex, some of them see-through.
 fn tinted(mesh: Mesh) -> Mesh {
-    let colours = (0..mesh.positions.len()).map(|vertex| [255, 80 * (vertex % 4) as u8, 120, 85 * (vertex % 4) as u8]);
+    let step = |vertex: usize| (vertex % 4) as f32;
+    let colours = (0..mesh.positions.len()).map(|vertex| [1.0, 0.3 * step(vertex), 0.5, step(vertex) / 3.0]);
     Mesh { colours: colours.collect(), ..mesh }
 }
 

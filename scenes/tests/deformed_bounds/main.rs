@@ -1,5 +1,7 @@
-//! Bounds of what skeletons bend hold every vertex, where the GPU puts it, at every time, in each of the four ways to have them.
+//! Bounds of deformed meshes hold every vertex, where the GPU puts it, at every time, in each of the four ways of `--bounds`.
 
+mod morphed;
+#[path = "../moving_support/mod.rs"]
 mod moving_support;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
@@ -7,22 +9,40 @@ use moving_support::{gpu_vertex, node, object, points, times, vector};
 use proptest::prelude::*;
 use scenes::animation::{AnimatedNode, Attachment, Interpolation, Local, NodeAnimation, Track};
 use scenes::{
-    weights_of_sum_one, Aabb, JointPlaces, Mesh, Motion, MovingBounds, MovingBoxes, RestVertex, Scene, Skin,
-    WorldBounds,
+    weights_of_sum_one, Aabb, Deformed, Mesh, MorphTarget, Motion, MovingBounds, MovingBoxes, RestVertex, Scene,
+    Shapes, Skin, WorldBounds, JOINTS_A_VERTEX,
 };
 use std::path::Path;
 
-/// The vertex as `world/skin_vertices` bends it.
-fn bent(vertex: &RestVertex, places: &[DAffine3]) -> Vec3 {
-    let parts = [0, 1, 2, 3].map(|part| {
-        let place = &places[vertex.joints[part] as usize];
-        let linear = place.matrix3.as_mat3();
-        let weight = vertex.weights[part];
-        [linear.x_axis, linear.y_axis, linear.z_axis, place.translation.as_vec3()].map(|column| column * weight)
-    });
-    let [x, y, z, shift] =
-        [0, 1, 2, 3].map(|column| parts[0][column] + parts[1][column] + parts[2][column] + parts[3][column]);
-    x * vertex.position.x + y * vertex.position.y + z * vertex.position.z + shift
+/// Computes vertices like `world/skin_vertices`: displaced by morph targets in order, then bent by joints in order.
+fn gpu_shape(deformed: &Deformed, shapes: &Shapes) -> Vec<Vec3> {
+    let mut positions: Vec<Vec3> = deformed.rest.iter().map(|vertex| vertex.position).collect();
+    for target in &deformed.targets {
+        let weight = shapes.weights[target.weight as usize] as f32;
+        target
+            .displacements
+            .iter()
+            .for_each(|displaced| positions[displaced.vertex as usize] += displaced.position * weight);
+    }
+    let Some(skin) = deformed.skin else { return positions };
+    let places = shapes.joints.of(skin);
+    for (position, vertex) in positions.iter_mut().zip(&deformed.rest) {
+        let mut columns = [Vec3::ZERO; 4];
+        for (joint, weight) in vertex.influences() {
+            let place = &places[joint as usize];
+            let linear = place.matrix3.as_mat3();
+            let of_joint = [linear.x_axis, linear.y_axis, linear.z_axis, place.translation.as_vec3()];
+            columns.iter_mut().zip(of_joint).for_each(|(sum, column)| *sum += column * weight);
+        }
+        let [x, y, z, shift] = columns;
+        *position = x * position.x + y * position.y + z * position.z + shift;
+    }
+    positions
+}
+
+/// Makes the joints or the weights of a vertex. All others are 0.
+fn shares<T: Copy + Default, const COUNT: usize>(first: [T; COUNT]) -> [T; JOINTS_A_VERTEX] {
+    std::array::from_fn(|at| first.get(at).copied().unwrap_or_default())
 }
 
 /// Every vertex that is outside of its box at one of these times, and of the box that its mesh declares for all times.
@@ -32,18 +52,18 @@ fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
     let (mut transforms, mut faults) = (Vec::new(), Vec::new());
     for seconds in times {
         scene.motion.transforms_at(*seconds, &mut transforms);
-        let joints = scene.joints_at(*seconds);
-        for skinned in &scene.skinned {
-            let moving = transforms.iter().position(|(object, _)| *object == skinned.object).expect("it moves");
-            let (transform, object) = (transforms[moving].1, &scene.objects[skinned.object as usize]);
-            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, &transform), &joints);
+        let shapes = scene.shapes_at(*seconds);
+        for (moving, (object, transform)) in transforms.iter().enumerate() {
+            let (transform, object) = (*transform, &scene.objects[*object as usize]);
+            let Some(deformed) = scene.deformation_of(object.mesh) else { continue };
+            let box_ = boxes.at(moving, *seconds, &bounds, (object.mesh, &transform), &shapes);
             let always = bounds.of(object.mesh, &transform);
             let farthest = boxes.farthest(moving).unwrap_or(f64::INFINITY);
             if transform.translation.abs().max_element() > farthest {
                 faults.push(format!("{mode:?}, {}, at {seconds}: its origin is beyond {farthest}", object.name));
             }
-            for vertex in &skinned.rest {
-                let vertex = gpu_vertex(&transform, bent(vertex, joints.of(skinned.skin)));
+            for vertex in gpu_shape(deformed, &shapes) {
+                let vertex = gpu_vertex(&transform, vertex);
                 for (what, box_) in [("its box", box_), ("the box for all times", always)] {
                     if !box_.contains(vertex) {
                         faults.push(format!(
@@ -60,23 +80,41 @@ fn outside(scene: &Scene, mode: MovingBounds, times: &[f64]) -> Vec<String> {
 
 /// An object that a skeleton of all these nodes bends, the first of which is the anchor.
 fn skinned(nodes: Vec<AnimatedNode>, inverse_binds: &[DAffine3], rest: Vec<RestVertex>) -> Scene {
-    let on = Attachment { object: 0, node: 0, node_from_object: DAffine3::IDENTITY };
-    let count = nodes.len();
-    let animation = NodeAnimation::new(nodes, vec![on]).expect("a legal animation");
+    deformed(nodes, (inverse_binds, DAffine3::IDENTITY), rest, (Vec::new(), Vec::new()))
+}
+
+/// Makes an object of these vertices and morph targets, on the first of these nodes. If there are inverse bind matrices, a skeleton of
+/// all nodes bends it. The object is an instance with a matrix of its own.
+fn deformed(
+    nodes: Vec<AnimatedNode>,
+    (inverse_binds, instance): (&[DAffine3], DAffine3),
+    rest: Vec<RestVertex>,
+    (weights, targets): (Vec<Track<f64>>, Vec<MorphTarget>),
+) -> Scene {
+    let on = match inverse_binds.is_empty() {
+        true => Attachment { node_from_object: instance, ..Attachment::new(0, 0) },
+        false => Attachment { world_from_tree: instance, ..Attachment::new(0, 0) },
+    };
+    let count = if inverse_binds.is_empty() { 0 } else { nodes.len() };
+    let animation = NodeAnimation::new(nodes, vec![on]).expect("a legal animation").with_weights(weights);
     let joints: Vec<(usize, DAffine3)> =
         (0..count).map(|node| (node, inverse_binds[node % inverse_binds.len()])).collect();
-    let skin = Skin::new(&animation, 0, &joints).expect("a legal skin");
+    let skins = match joints.is_empty() {
+        true => Vec::new(),
+        false => vec![Skin::new(&animation, 0, &joints).expect("a legal skin")],
+    };
+    let skin = (!skins.is_empty()).then_some(0);
     let positions: Vec<Vec3> = rest.iter().map(|vertex| vertex.position).collect();
     let mut scene = Scene {
         meshes: vec![Mesh { normals: vec![Vec3::Z; positions.len()], positions, ..Mesh::default() }],
         motion: Motion::Nodes(animation),
-        skins: vec![skin],
+        skins,
         ..Scene::default()
     };
     let mut transforms = Vec::new();
     scene.motion.transforms_at(0.0, &mut transforms);
     scene.objects = vec![object("body", 0, transforms[0].1)];
-    scene.bend(0, 0, rest).expect("it can be bent");
+    scene.deform(vec![Deformed { mesh: 0, skin, rest, targets }]).expect("it can be deformed");
     scene
 }
 
@@ -86,9 +124,12 @@ fn affine() -> impl Strategy<Value = DAffine3> {
         .prop_map(|(columns, at)| DAffine3 { matrix3: DMat3::from_cols_array(&columns), translation: at })
 }
 
-/// Vertices on up to four joints each, some of them on one alone.
-fn rest(points: Vec<Vec3>, choices: &[([u32; 4], [f32; 4])], joints: usize) -> Vec<RestVertex> {
-    let vertex = |(position, (on, weights)): (Vec3, &([u32; 4], [f32; 4]))| RestVertex {
+/// Joints and weights.
+type Choice = ([u32; JOINTS_A_VERTEX], [f32; JOINTS_A_VERTEX]);
+
+/// Vertices on up to eight joints each, some of them on one alone.
+fn rest(points: Vec<Vec3>, choices: &[Choice], joints: usize) -> Vec<RestVertex> {
+    let vertex = |(position, (on, weights)): (Vec3, &Choice)| RestVertex {
         position,
         normal: Vec3::Z,
         joints: on.map(|joint| joint % joints as u32),
@@ -115,9 +156,9 @@ fn skeleton() -> impl Strategy<Value = (Vec<AnimatedNode>, Vec<f64>)> {
     })
 }
 
-fn choices() -> impl Strategy<Value = Vec<([u32; 4], [f32; 4])>> {
+fn choices() -> impl Strategy<Value = Vec<Choice>> {
     let weight = prop_oneof![0.0..1.0f32, Just(0.0f32), Just(1.0f32)];
-    prop::collection::vec((prop::array::uniform4(0..6u32), prop::array::uniform4(weight)), 1..6)
+    prop::collection::vec((prop::array::uniform8(0..6u32), prop::array::uniform8(weight)), 1..6)
 }
 
 proptest! {
@@ -153,8 +194,8 @@ fn arm() -> Scene {
     let rest = vertices.map(|(x, [upper, lower])| RestVertex {
         position: Vec3::X * x,
         normal: Vec3::Z,
-        joints: [0, 1, 0, 0],
-        weights: [upper, lower, 0.0, 0.0],
+        joints: shares([0, 1]),
+        weights: shares([upper, lower]),
     });
     let inverse_binds = [DAffine3::IDENTITY, DAffine3::from_translation(-DVec3::X)];
     skinned(vec![node(None, 0.0, Vec::new()), node(Some(0), 1.0, bend)], &inverse_binds, rest.to_vec())
@@ -165,13 +206,13 @@ fn arm() -> Scene {
 fn bounds_of_the_rest_pose_are_caught() {
     let scene = arm();
     let mut rigid = scene.clone();
-    (rigid.skinned, rigid.skins) = (Vec::new(), Vec::new());
+    (rigid.deformed, rigid.skins) = (Vec::new(), Vec::new());
     rigid.meshes[0].declared_bounds = None;
     let rests = WorldBounds::new(&rigid);
-    let hand = |seconds: f64| bent(&scene.skinned[0].rest[2], scene.joints_at(seconds).of(0)).as_dvec3();
+    let hand = |seconds: f64| gpu_shape(&scene.deformed[0], &scene.shapes_at(seconds))[2].as_dvec3();
     let (bent_up, keys) = (hand(1.2), Aabb::from_points([0.0, 2.0].map(hand)).union(Aabb::from_points([DVec3::ZERO])));
     let frozen = MovingBoxes::new(&rigid, &rests, MovingBounds::Union);
-    let frozen = frozen.at(0, 1.2, &rests, (0, &DAffine3::IDENTITY), &JointPlaces::default());
+    let frozen = frozen.at(0, 1.2, &rests, (0, &DAffine3::IDENTITY), &Shapes::default());
     assert!(!frozen.contains(bent_up), "{bent_up}: {frozen:?}");
     assert!(!keys.contains(bent_up), "{bent_up}: {keys:?}");
     for mode in MovingBounds::ALL {
@@ -185,8 +226,8 @@ fn boxes_of_bent_objects_are_tight() {
     let scene = arm();
     let bounds = WorldBounds::new(&scene);
     let at = |mode, seconds: f64| {
-        let joints = scene.joints_at(seconds);
-        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &DAffine3::IDENTITY), &joints)
+        let shapes = scene.shapes_at(seconds);
+        MovingBoxes::new(&scene, &bounds, mode).at(0, seconds, &bounds, (0, &DAffine3::IDENTITY), &shapes)
     };
     let near = |box_: Aabb, [x, y]: [f64; 2], [u, v]: [f64; 2], slack: f64| {
         let wanted = Aabb { min: DVec3::new(x, y, 0.0), max: DVec3::new(u, v, 0.0) };
@@ -220,21 +261,21 @@ fn skins_without_a_meaning_are_refused() {
     assert!(arm().check().is_ok());
     type Change = fn(&mut Scene);
     let changes: [(Change, &str); 9] = [
-        (|scene| scene.objects.push(object("other", 0, DAffine3::IDENTITY)), "another object has too"),
-        (|scene| scene.skinned.push(scene.skinned[0].clone()), "it is bent twice, or out of order"),
-        (|scene| scene.skinned[0].skin = 3, "it has skin 3, but the scene has 1"),
-        (|scene| scene.skinned[0].rest[1].joints[2] = 9, "vertex 1: it has joint 9, but its skin has 2"),
-        (|scene| scene.skinned[0].rest[1].weights = [0.5, 0.25, 0.0, 0.0], "do not add up to 1"),
-        (|scene| scene.skinned[0].rest[1].weights = [1.5, -0.5, 0.0, 0.0], "are negative"),
-        (|scene| scene.skinned[0].rest.truncate(2), "2 vertices at rest for the 3 of its mesh"),
+        (|scene| scene.objects.push(object("other", 0, DAffine3::IDENTITY)), "it hangs on no node of the animation"),
+        (|scene| scene.deformed.push(scene.deformed[0].clone()), "its mesh is deformed twice, or out of order"),
+        (|scene| scene.deformed[0].skin = Some(3), "it has skin 3, but the scene has 1"),
+        (|scene| scene.deformed[0].rest[1].joints[2] = 9, "vertex 1: it has joint 9, but its skin has 2"),
+        (|scene| scene.deformed[0].rest[1].weights = shares([0.5, 0.25]), "do not add up to 1"),
+        (|scene| scene.deformed[0].rest[1].weights = shares([1.5, -0.5]), "are negative"),
+        (|scene| scene.deformed[0].rest.truncate(2), "2 vertices at rest for the 3 of its mesh"),
         (|scene| scene.meshes[0].declared_bounds = None, "declares no box for all its shapes"),
-        (|scene| scene.motion = Motion::Still, "nothing moves its skeleton"),
+        (|scene| scene.motion = Motion::Still, "its mesh is deformed, but nothing moves"),
     ];
     for (index, (change, text)) in changes.into_iter().enumerate() {
         let mut scene = arm();
         change(&mut scene);
         let message = scene.check().expect_err("it has no meaning").to_string();
-        assert!(message.starts_with("object 'body': ") && message.contains(text), "change {index}: {message}");
+        assert!(message.starts_with("object '") && message.contains(text), "change {index}: {message}");
     }
     let Motion::Nodes(nodes) = arm().motion else { panic!("an arm has bones") };
     let refused = |anchor: usize, joint: (usize, DAffine3)| Skin::new(&nodes, anchor, &[joint]).unwrap_err();
