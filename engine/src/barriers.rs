@@ -46,7 +46,7 @@ impl Point {
 /// One resource touched by one stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
-    /// The buffer or image.
+    /// The buffer or image, as a whole: ranges of one buffer are not told apart, so that disjoint ranges are cut as the same range is.
     pub resource: ResourceId,
     /// Where.
     pub point: Point,
@@ -139,42 +139,4 @@ impl BarrierTracker {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const A: ResourceId = ResourceId(1);
-    const B: ResourceId = ResourceId(2);
-
-    #[test]
-    fn reads_after_reads_need_no_barrier() {
-        let mut tracker = BarrierTracker::default();
-        assert_eq!(tracker.next(&[Use::read(A, Point::Compute)]), None);
-        assert_eq!(tracker.next(&[Use::read(A, Point::Drawing), Use::write(B, Point::Colour)]), None);
-    }
-
-    #[test]
-    fn a_read_after_a_write_is_cut() {
-        let mut tracker = BarrierTracker::default();
-        tracker.next(&[Use::write(A, Point::Compute)]);
-        let barrier = tracker.next(&[Use::read(A, Point::Indirect)]).expect("read after write");
-        assert_eq!((barrier.after, barrier.written, barrier.because), (Point::Compute.bit(), Point::Compute.bit(), A));
-    }
-
-    #[test]
-    fn a_write_after_a_read_is_cut() {
-        let mut tracker = BarrierTracker::default();
-        tracker.next(&[Use::read(A, Point::Indirect)]);
-        let barrier = tracker.next(&[Use::write(A, Point::Compute)]).expect("write after read");
-        assert_eq!((barrier.after, barrier.written), (Point::Indirect.bit(), 0));
-    }
-
-    #[test]
-    fn a_cut_covers_every_earlier_write() {
-        let mut tracker = BarrierTracker::default();
-        tracker.next(&[Use::write(A, Point::Compute)]);
-        tracker.next(&[Use::write(B, Point::Transfer)]);
-        let barrier = tracker.next(&[Use::read(A, Point::Compute)]).expect("read after write");
-        assert_eq!(barrier.written, Point::Compute.bit() | Point::Transfer.bit());
-        assert_eq!(tracker.next(&[Use::read(B, Point::Compute)]), None, "the same cut already ordered it");
-    }
-}
+mod tests;

@@ -6,7 +6,7 @@ use crate::lost;
 use crate::lower::{self, Lowered};
 use crate::recorder::{apart, IndexedIndirect, Op, Recorded, Recorder};
 use crate::target::Target;
-use crate::timers::{self, Queries, TimerMode};
+use crate::timers::{self, Queries, StageTime, TimerMode};
 use crate::{Buffer, Error, Result};
 use bytemuck::Pod;
 use shaders::{engine, Bound, BufferRef, ComputeStage, GraphicsStage};
@@ -19,15 +19,6 @@ mod occlusion;
 mod shapes;
 
 pub use occlusion::{OcclusionQueries, Queried};
-
-/// What a stage cost.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StageTime {
-    /// Stage name, with the part of the frame behind a colon.
-    pub label: String,
-    /// Milliseconds on the device.
-    pub ms: f64,
-}
 
 /// A stage that was not recorded, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -278,9 +269,9 @@ impl Frame {
         self.report.submissions += 1;
         done.map_err(|result| lost::submit_error(vulkan, result, queries.timestamps, ops))?;
         if let (Some(_), Some(pool)) = (self.timer, queries.timestamps) {
-            let times = timers::stage_ms(&vulkan.device, &vulkan.info, pool, ops.len())?;
-            let labels = ops.iter().map(|recorded| recorded.label.clone());
-            self.report.stages.extend(labels.zip(times).map(|(label, ms)| StageTime { label, ms }));
+            let ticks = timers::read_ticks(&vulkan.device, pool, ops.len())?;
+            let info = &vulkan.info;
+            self.report.stages.extend(timers::stage_times(ops, &ticks, info.timestamp_ns, info.timestamp_bits));
         }
         if let Some(pool) = how.statistics {
             let [primitives, fragments] = timers::statistics(&vulkan.device, pool)?;

@@ -38,7 +38,7 @@ pub use capture::Capture;
 pub use depth::DepthFormat;
 pub use error::Error;
 pub use features::{Extra, Feature};
-pub use frame::{Frame, FrameReport, OcclusionQueries, Queried, Skip, StageTime, Statistics};
+pub use frame::{Frame, FrameReport, OcclusionQueries, Queried, Skip, Statistics};
 pub use gpu::{Gpu, GpuOptions};
 pub use image::Image;
 pub use lower::folded;
@@ -46,7 +46,7 @@ pub use memory::{Buffer, Placement};
 pub use messages::Message;
 pub use recorder::{Faces, IndexedIndirect, Op, Primitives, QueriesRef, Recorded, Recorder, Shapes, Surface};
 pub use target::{Format, KeptSample, Samples, Target};
-pub use timers::TimerMode;
+pub use timers::{StageTime, TimerMode};
 pub use window::{Panel, Shown, Window};
 
 /// What the engine's calls return.

@@ -43,16 +43,7 @@ struct Recording<'a> {
 }
 
 pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<Lowered> {
-    let stamps = ops.len() as u32 + 1;
-    if stamps > MAX_TIMESTAMPS {
-        return Err(Error::TooLarge {
-            what: "a frame".to_owned(),
-            wanted: format!("{} stages", ops.len()),
-            limit: format!("{} stages a submission", MAX_TIMESTAMPS - 1),
-            device: vulkan.info.name.clone(),
-            remedy: "use a method option that needs fewer".to_owned(),
-        });
-    }
+    let stamps = timestamps(ops.len(), &vulkan.info.name)?;
     assert_counts_do_not_lapse(ops);
     vulkan.descriptors.begin(&vulkan.device, &vulkan.names, ops)?;
     let commands = vulkan.begin_commands("frame")?;
@@ -99,6 +90,20 @@ pub(crate) fn lower(vulkan: &Vulkan, ops: &[Recorded], how: &How<'_>) -> Result<
     Ok(Lowered { commands })
 }
 
+/// Timestamps of a submission: one before its first stage, and one after each. An error where the pool has fewer.
+fn timestamps(stages: usize, device: &str) -> Result<u32> {
+    if stages >= MAX_TIMESTAMPS as usize {
+        return Err(Error::TooLarge {
+            what: "a frame".to_owned(),
+            wanted: format!("{stages} stages"),
+            limit: format!("{} stages a submission", MAX_TIMESTAMPS - 1),
+            device: device.to_owned(),
+            remedy: "use a method option that needs fewer".to_owned(),
+        });
+    }
+    Ok(stages as u32 + 1)
+}
+
 /// See [`IndexedIndirect`]: a programming error, caught where it can be seen.
 fn assert_counts_do_not_lapse(ops: &[Recorded]) {
     let mut counted = false;
@@ -141,18 +146,7 @@ impl Recording<'_> {
     }
 
     fn barrier(&self, barrier: &Barrier) {
-        let mut stages = vk::PipelineStageFlags2::empty();
-        let mut accesses = vk::AccessFlags2::empty();
-        for point in Point::ALL.into_iter().filter(|point| barrier.after & point.bit() != 0) {
-            let (stage, write) = source(point);
-            stages |= stage;
-            accesses |= if barrier.written & point.bit() != 0 { write } else { vk::AccessFlags2::empty() };
-        }
-        let memory = [vk::MemoryBarrier2::default()
-            .src_stage_mask(stages)
-            .src_access_mask(accesses)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)];
+        let memory = [memory_barrier(barrier)];
         let info = vk::DependencyInfo::default().memory_barriers(&memory);
         // SAFETY: the command buffer is recording, outside a rendering.
         unsafe { self.vulkan.device.cmd_pipeline_barrier2(self.commands, &info) };
@@ -352,6 +346,22 @@ pub fn folded(groups: u32) -> [u32; 2] {
     [groups.div_ceil(rows.max(1)), rows]
 }
 
+/// The barrier as Vulkan takes it: from the stages that touched something, and the writes of those that wrote, to all that follows.
+fn memory_barrier(barrier: &Barrier) -> vk::MemoryBarrier2<'static> {
+    let mut stages = vk::PipelineStageFlags2::empty();
+    let mut accesses = vk::AccessFlags2::empty();
+    for point in Point::ALL.into_iter().filter(|point| barrier.after & point.bit() != 0) {
+        let (stage, write) = source(point);
+        stages |= stage;
+        accesses |= if barrier.written & point.bit() != 0 { write } else { vk::AccessFlags2::empty() };
+    }
+    vk::MemoryBarrier2::default()
+        .src_stage_mask(stages)
+        .src_access_mask(accesses)
+        .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
+}
+
 /// The Vulkan stages and write accesses of a point.
 fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
     use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stage};
@@ -369,24 +379,4 @@ fn source(point: Point) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_list_in_pieces_is_drawn_once_and_in_order() {
-        let of = |draws, most| pieces(draws, most).collect::<Vec<_>>();
-        assert_eq!(of(0, 4), []);
-        assert_eq!(of(4, 4), [(0, 4)]);
-        assert_eq!(of(9, 4), [(0, 4), (4, 4), (8, 1)]);
-        assert_eq!(of(3, 1), [(0, 1), (1, 1), (2, 1)]);
-        assert_eq!(of(94_000, u32::MAX), [(0, 94_000)]);
-    }
-
-    #[test]
-    fn folded_grids_cover_every_group_within_the_limit() {
-        for groups in [1, 64, 65_535, 65_536, 156_250, 4_000_000_000] {
-            let [x, y] = folded(groups);
-            assert!(x <= MOST_GROUPS && u64::from(x) * u64::from(y) >= u64::from(groups), "{groups}: {x}x{y}");
-        }
-    }
-}
+mod tests;

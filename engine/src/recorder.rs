@@ -382,3 +382,6 @@ fn attachments(target: &Target) -> Vec<Use> {
     uses.extend(target.drawn_colours().map(|(image, _)| Use::both(image.id, Point::Colour)));
     uses
 }
+
+#[cfg(test)]
+mod tests;

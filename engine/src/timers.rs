@@ -9,7 +9,8 @@ use crate::error::Named;
 use crate::features::{Extra, Extras};
 use crate::lock::lock;
 use crate::names::Names;
-use crate::{AdapterInfo, DeviceKind, Result};
+use crate::recorder::Recorded;
+use crate::{DeviceKind, Result};
 use ash::vk;
 use std::fmt;
 use std::sync::Mutex;
@@ -44,6 +45,15 @@ impl fmt::Display for TimerMode {
             TimerMode::Off => "nothing: the device has no timestamps",
         })
     }
+}
+
+/// What a stage cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageTime {
+    /// Stage name, with the part of the frame behind a colon.
+    pub label: String,
+    /// Milliseconds on the device.
+    pub ms: f64,
 }
 
 /// Stages that one submission can time.
@@ -100,20 +110,24 @@ impl QueryStore {
     }
 }
 
-/// Reads the timestamps of a finished submission: milliseconds of each of its stages.
-pub(crate) fn stage_ms(
-    device: &ash::Device,
-    info: &AdapterInfo,
-    pool: vk::QueryPool,
-    stages: usize,
-) -> Result<Vec<f64>> {
+/// Reads the timestamps of a finished submission: one before its first stage, and one after each of its stages.
+pub(crate) fn read_ticks(device: &ash::Device, pool: vk::QueryPool, stages: usize) -> Result<Vec<u64>> {
     let mut ticks = vec![0u64; stages + 1];
     // SAFETY: the submission is done, and wrote this many timestamps.
     unsafe { device.get_query_pool_results(pool, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
         .named("vkGetQueryPoolResults")?;
-    let ms = f64::from(info.timestamp_ns) * 1e-6;
-    let time = |pair: &[u64]| ticks_between(pair[0], pair[1], info.timestamp_bits) as f64 * ms;
-    Ok(ticks.windows(2).map(time).collect())
+    Ok(ticks)
+}
+
+/// Returns the time of each stage. `ticks` holds one timestamp before the first stage and one after each stage, of `tick_ns` nanoseconds a
+/// tick and `bits` valid bits.
+pub(crate) fn stage_times(ops: &[Recorded], ticks: &[u64], tick_ns: f32, bits: u32) -> Vec<StageTime> {
+    let tick_ms = f64::from(tick_ns) * 1e-6;
+    let time = |(recorded, pair): (&Recorded, &[u64])| StageTime {
+        label: recorded.label.clone(),
+        ms: ticks_between(pair[0], pair[1], bits) as f64 * tick_ms,
+    };
+    ops.iter().zip(ticks.windows(2)).map(time).collect()
 }
 
 /// Ticks from one timestamp to a later one. Those of fewer than 64 bits start again at 0: 36 bits of 83 ns after 95 minutes.
@@ -138,27 +152,4 @@ pub(crate) fn statistics(device: &ash::Device, pool: vk::QueryPool) -> Result<[u
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{ticks_between, TimerMode};
-    use crate::DeviceKind;
-
-    /// The mode was measured at each start, and differed in 2 of 8 starts on a busy machine.
-    #[test]
-    fn the_kind_of_device_alone_decides_how_stages_are_timed() {
-        assert_eq!(TimerMode::of(DeviceKind::Cpu), TimerMode::Split);
-        for gpu in [DeviceKind::Discrete, DeviceKind::Integrated, DeviceKind::Virtual] {
-            assert_eq!(TimerMode::of(gpu), TimerMode::Plain);
-        }
-    }
-
-    #[test]
-    fn timestamps_that_start_again_at_zero_still_tell_the_time() {
-        assert_eq!(ticks_between(5, 12, 64), 7);
-        assert_eq!(ticks_between((1 << 36) - 3, 4, 36), 7);
-        assert_eq!(ticks_between(u64::MAX - 2, 4, 64), 7);
-        assert_eq!(ticks_between(12, 5, 64), 0, "a step back");
-        assert_eq!(ticks_between(12, 5, 36), 0, "a step back");
-        // Bits beyond the valid ones mean nothing.
-        assert_eq!(ticks_between(0xff << 36 | 5, 12, 36), 7);
-    }
-}
+mod tests;

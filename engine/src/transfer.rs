@@ -183,14 +183,19 @@ pub(crate) fn whole_image(format: Format, [width, height]: [u32; 2]) -> vk::Buff
 
 /// Everything before, before everything after: for the edges of submissions, where no tracker looks.
 pub(crate) fn full_barrier(device: &ash::Device, commands: vk::CommandBuffer) {
-    let barrier = [vk::MemoryBarrier2::default()
+    let barrier = [everything()];
+    // SAFETY: the command buffer is recording, outside a rendering.
+    unsafe { device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().memory_barriers(&barrier)) };
+}
+
+/// The barrier of [`full_barrier`].
+pub(crate) fn everything() -> vk::MemoryBarrier2<'static> {
+    vk::MemoryBarrier2::default()
         .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
         .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
         // The host too: mapped buffers are read once the submission's fence is passed.
         .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
-        .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)];
-    // SAFETY: the command buffer is recording, outside a rendering.
-    unsafe { device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().memory_barriers(&barrier)) };
+        .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
 }
 
 impl Vulkan {
