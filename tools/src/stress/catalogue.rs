@@ -4,6 +4,8 @@
 //! made by chance from the seed and from a number of bodies, so that the same family can be small in a test and large in a
 //! long run.
 
+#[cfg(test)]
+mod golden;
 mod projections;
 mod sequences;
 mod sizes;

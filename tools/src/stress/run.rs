@@ -7,7 +7,7 @@ use super::lab::{Lab, Take};
 use super::{settings, Random, Subject};
 use crate::measures::metrics::{FrameError, FrameImages, Truth};
 use anyhow::Result;
-use culling::VisibleSets;
+use culling::{Method, VisibleSets};
 use engine::Gpu;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -131,11 +131,9 @@ fn one_drill(gpu: &Gpu, plan: &Plan, id: DrillId, outcome: &mut Outcome) -> Resu
     measure(&mut lab, &drill, &truths, row, &mut outcome.broken_bounds)?;
     for (index, method) in outcome.methods.iter_mut().enumerate() {
         let subject = plan.subject(index, id);
-        let mut play = || play(&mut lab, &subject, &drill, &truths, &sets);
         // Every second drill is run again: what was drawn must be drawn again, to the bit.
-        let twice = play().and_then(|once| Ok((if id.seed.is_multiple_of(2) { Some(play()?) } else { None }, once)));
-        let (tally, faults) = match twice {
-            Ok((again, once)) => (tally_of(&once), faults_of(&drill, &once, again.as_deref())),
+        let (tally, faults) = match tried(&mut lab, &subject, &drill, (&truths, &sets), id.seed.is_multiple_of(2)) {
+            Ok(verdict) => verdict,
             Err(error) => (Tally::default(), vec![format!("{error:#}")]),
         };
         row.tally.add(&tally);
@@ -169,8 +167,8 @@ fn fit(lab: &mut Lab, size: [u32; 2]) -> Result<()> {
 
 /// One frame of a method in a drill.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Played {
-    pub(super) error: FrameError,
+struct Played {
+    error: FrameError,
     /// Pixels outside the raster conditions, which the error leaves out.
     thin: u64,
     /// Of its pictures.
@@ -205,15 +203,37 @@ fn played(subject: &Subject, truth: &Truth, take: &Take, (error, thin): (FrameEr
     Played { error, thin, pictures, lists }
 }
 
-/// What a method does in each frame of a drill.
-pub(super) fn play(
+/// Runs a method through a drill. Returns its tally and its faults. With `twice`, another instance of the method runs too. In a drill that tells
+/// methods to forget, the same instance is told once more and runs again: it must then draw as a new one does.
+pub(super) fn tried(
     lab: &mut Lab,
     subject: &Subject,
     drill: &Drill,
-    truths: &[Truth],
-    sets: &Arc<VisibleSets>,
-) -> Result<Vec<Played>> {
+    (truths, sets): (&[Truth], &Arc<VisibleSets>),
+    twice: bool,
+) -> Result<(Tally, Vec<String>)> {
     let mut method = lab.make(subject, sets)?;
+    let once = film(lab, subject, &mut *method, drill, truths)?;
+    let mut again = Vec::new();
+    if twice {
+        let mut other = lab.make(subject, sets)?;
+        again.push(("another run", film(lab, subject, &mut *other, drill, truths)?));
+    }
+    if !drill.forgets.is_empty() {
+        method.forget()?;
+        again.push(("a run after forgetting", film(lab, subject, &mut *method, drill, truths)?));
+    }
+    Ok((tally_of(&once), faults_of(drill, &once, &again)))
+}
+
+/// What a method does in each frame of a drill.
+fn film(
+    lab: &mut Lab,
+    subject: &Subject,
+    method: &mut dyn Method,
+    drill: &Drill,
+    truths: &[Truth],
+) -> Result<Vec<Played>> {
     let mut frames = Vec::new();
     for (frame, shot) in drill.case.shots.iter().enumerate() {
         fit(lab, drill.size(frame))?;
@@ -251,8 +271,8 @@ impl Tally {
 }
 
 /// What an exact method may not do, frame by frame: lose objects, change pixels, show another picture while nothing changes, or
-/// draw another list when it is run `again`.
-pub(super) fn faults_of(drill: &Drill, frames: &[Played], again: Option<&[Played]>) -> Vec<String> {
+/// draw another list when it is run `again`, in one of the ways named.
+fn faults_of(drill: &Drill, frames: &[Played], again: &[(&str, Vec<Played>)]) -> Vec<String> {
     let mut faults = Vec::new();
     for (frame, played) in frames.iter().enumerate() {
         faults.extend(wrong(&played.error).map(|what| format!("frame {frame}: {what}")));
@@ -264,9 +284,9 @@ pub(super) fn faults_of(drill: &Drill, frames: &[Played], again: Option<&[Played
         {
             faults.push(format!("frame {frame}: nothing changed, but the picture did"));
         }
-        if again.is_some_and(|again| (again[frame].pictures, again[frame].lists) != (played.pictures, played.lists)) {
-            faults.push(format!("frame {frame}: another run draws another picture or list"));
-        }
+        let left = |played: &Played| (played.pictures, played.lists);
+        let others = again.iter().filter(|(_, again)| left(&again[frame]) != left(played));
+        faults.extend(others.map(|(run, _)| format!("frame {frame}: {run} draws another picture or list")));
     }
     faults
 }
@@ -304,3 +324,6 @@ fn measure(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

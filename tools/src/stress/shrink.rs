@@ -1,7 +1,7 @@
 //! Makes a failing drill small: what still fails with fewer frames and objects says more.
 
 use super::catalogue::Drill;
-use super::run::{faults_of, play, truths};
+use super::run::{tried, truths};
 use super::{Lab, Subject};
 use engine::Gpu;
 use scenes::{Motion, Scene};
@@ -25,9 +25,8 @@ fn fails(gpu: &Gpu, subject: &Subject, drill: &Drill) -> bool {
     let played = || -> anyhow::Result<bool> {
         let mut lab = Lab::new(gpu, &drill.case)?;
         let (truths, sets) = truths(&mut lab, drill)?;
-        let once = play(&mut lab, subject, drill, &truths, &sets)?;
-        let again = play(&mut lab, subject, drill, &truths, &sets)?;
-        Ok(!faults_of(drill, &once, Some(&again)).is_empty())
+        let (_, faults) = tried(&mut lab, subject, drill, (&truths, &sets), true)?;
+        Ok(!faults.is_empty())
     };
     // A frame that the device or its validation layer refuses is a failure too.
     played().unwrap_or(true)
