@@ -9,6 +9,9 @@ use sightline::stress::refusals::refusal_faults;
 use sightline::stress::{run, Outcome, Plan};
 use std::cell::Cell;
 
+#[path = "stress_catalogue/judge.rs"]
+mod judge;
+
 /// What `sightline stress` runs without arguments.
 fn default_plan(subjects: Vec<Subject>, as_given: bool) -> Plan {
     Plan { subjects, drills: all_drills(0, 2, 25), bodies: 100, size: None, as_given }
@@ -71,6 +74,8 @@ enum Bug {
     DroppedOverflow,
     /// What was known of an object's place is kept when the object moves.
     StaleFlags,
+    /// It does not forget. What it remembers costs no pixel.
+    ForgetsNothing,
 }
 
 /// The longest list of [`Bug::DroppedOverflow`].
@@ -179,6 +184,9 @@ impl Method for Buggy {
     }
 
     fn forget(&mut self) -> culling::Result<()> {
+        if self.bug == Bug::ForgetsNothing {
+            return Ok(());
+        }
         self.last = None;
         self.seen.write(&vec![0; self.seen.len()])?;
         Ok(())
