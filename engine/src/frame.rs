@@ -314,9 +314,8 @@ impl Frame {
         if self.timer.is_none() {
             return Ok(data);
         }
-        let stages: f64 = self.report.stages[first..].iter().map(|stage| stage.ms).sum();
-        let stall = (since.elapsed().as_secs_f64() * 1e3 - stages).max(0.0);
-        self.report.stages.push(StageTime { label: self.recorder.label(label), ms: stall });
+        let stall = timers::stall(self.recorder.label(label), since.elapsed(), &self.report.stages[first..]);
+        self.report.stages.push(stall);
         Ok(data)
     }
 

@@ -14,6 +14,7 @@ use crate::{DeviceKind, Result};
 use ash::vk;
 use std::fmt;
 use std::sync::Mutex;
+use std::time::Duration;
 
 /// How stages are kept apart in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,6 +129,12 @@ pub(crate) fn stage_times(ops: &[Recorded], ticks: &[u64], tick_ns: f32, bits: u
         ms: ticks_between(pair[0], pair[1], bits) as f64 * tick_ms,
     };
     ops.iter().zip(ticks.windows(2)).map(time).collect()
+}
+
+/// Returns the row of a wait: the milliseconds that it took beyond the stages that ran meanwhile.
+pub(crate) fn stall(label: String, waited: Duration, stages: &[StageTime]) -> StageTime {
+    let busy: f64 = stages.iter().map(|stage| stage.ms).sum();
+    StageTime { label, ms: (waited.as_secs_f64() * 1e3 - busy).max(0.0) }
 }
 
 /// Ticks from one timestamp to a later one. Those of fewer than 64 bits start again at 0: 36 bits of 83 ns after 95 minutes.

@@ -1,7 +1,8 @@
-use super::{stage_times, ticks_between, TimerMode};
+use super::{stage_times, stall, ticks_between, StageTime, TimerMode};
 use crate::recorder::{Op, Recorded};
 use crate::DeviceKind;
 use shaders::{Bound, ResourceId};
+use std::time::Duration;
 
 /// The mode was measured at each start, and differed in 2 of 8 starts on a busy machine.
 #[test]
@@ -83,4 +84,15 @@ fn a_step_back_and_a_new_start_cost_their_own_stage_alone() {
 fn a_submission_of_one_stage_has_one_time() {
     assert_eq!(rows(&stages(&["only"]), &[7, 9], 1e6, 64), [("only".to_owned(), 2.0)]);
     assert_eq!(rows(&[], &[7], 1e6, 64), []);
+}
+
+/// The stages of the same submission are in the table already. Clocks of device and host differ a little, so that the rest may come out below 0.
+#[test]
+fn a_wait_costs_what_its_stages_do_not() {
+    let stages = [4.0, 0.5].map(|ms| StageTime { label: "a".to_owned(), ms });
+    let row =
+        |waited, stages: &[StageTime]| stall("frame/read_back:late".to_owned(), Duration::from_millis(waited), stages);
+    assert_eq!(row(7, &stages), StageTime { label: "frame/read_back:late".to_owned(), ms: 2.5 });
+    assert_eq!(row(7, &[]).ms, 7.0);
+    assert_eq!(row(4, &stages).ms, 0.0);
 }
