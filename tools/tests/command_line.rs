@@ -92,3 +92,117 @@ fn several_samples_a_pixel_are_drawn_or_refused_in_one_line() {
     }
     std::fs::remove_dir_all(&out).unwrap();
 }
+
+/// A run of a method that loses objects, as `query-lag` does wherever the camera jumps, beside one that cannot.
+fn stressed(folder: &std::path::Path, more: &str) -> Output {
+    let words =
+        "stress --method none,query-lag --case teleports/0 --case near-plane/0 --as-given --bodies 20 --size 64x40";
+    sightline(&format!("{words}{more} --out {}", folder.display()))
+}
+
+/// What the faults of a failure add up to: lost objects, and pixels that differ or have a wrong colour.
+fn sum_of_faults(failure: &serde_json::Value) -> [u64; 2] {
+    let faults = failure["faults"].as_array().unwrap().iter().map(|fault| {
+        let words: Vec<_> = fault.as_str().unwrap().split(' ').collect();
+        let [_, _, lost, _, differing, _, _, wrong, ..] = words.as_slice() else { panic!("{fault}") };
+        [lost.parse::<u64>().unwrap(), differing.parse::<u64>().unwrap() + wrong.parse::<u64>().unwrap()]
+    });
+    faults.fold([0; 2], |sum, fault| [sum[0] + fault[0], sum[1] + fault[1]])
+}
+
+#[test]
+fn stress_fails_with_1_and_its_counts_are_those_of_its_faults() {
+    let folder = std::env::temp_dir().join(format!("sightline-stressed-{}", std::process::id()));
+    let json = stressed(&folder, " --json");
+    let said = String::from_utf8(json.stderr).unwrap();
+    assert_eq!(json.status.code(), Some(1), "{said}");
+    assert!(said.ends_with("sightline: 2 failures, see above\n"), "{said}");
+    let outcome: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let list = |name: &str| outcome[name].as_array().unwrap().clone();
+    let number =
+        |value: &serde_json::Value, name: &str| value[name].as_u64().unwrap_or_else(|| panic!("{name}: {value}"));
+    let failures = list("failures");
+    let cases: Vec<_> = failures.iter().map(|failure| (failure["method"].clone(), failure["case"].clone())).collect();
+    assert_eq!(cases, [("query-lag".into(), "teleports/0".into()), ("query-lag".into(), "near-plane/0".into())]);
+
+    // By family: in the catalogue's order, each with its own drill, which two methods ran.
+    let sums: Vec<_> = failures.iter().map(sum_of_faults).collect();
+    let families = list("families");
+    for (family, name, sum) in [(&families[0], "near-plane", sums[1]), (&families[1], "teleports", sums[0])] {
+        assert_eq!((family["family"].as_str(), number(family, "runs")), (Some(name), 2));
+        assert_eq!([number(family, "lost"), number(family, "differing_pixels")], sum, "{name}");
+        assert!(sum[0] > 0 && sum[1] > 0);
+    }
+    assert_eq!((families.len(), number(&families[0], "object_frames")), (2, 2 * 7 * 21));
+    assert_eq!(number(&families[1], "object_frames"), 2 * 9 * 21);
+
+    // By method.
+    let methods = list("methods");
+    let all = [sums[0][0] + sums[1][0], sums[0][1] + sums[1][1]];
+    for (method, label, sum) in [(&methods[0], "none", [0; 2]), (&methods[1], "query-lag", all)] {
+        assert_eq!((method["label"].as_str(), number(method, "runs")), (Some(label), 2));
+        assert_eq!(number(method, "object_frames"), (7 + 9) * 21);
+        assert_eq!([number(method, "lost"), number(method, "differing_pixels")], sum, "{label}");
+    }
+
+    // Each failure is saved as it was told, smaller, with the pictures of a frame that is wrong.
+    for (failure, name) in failures.iter().zip(["0-query-lag-teleports-0", "1-query-lag-near-plane-0"]) {
+        let saved = folder.join("failures").join(name);
+        let note: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(saved.join("drill.json")).unwrap()).unwrap();
+        assert_eq!((&note["faults"], &note["drill"]), (&failure["faults"], &failure["case"]));
+        let (objects, frames) = (note["objects"].as_array().unwrap().len(), note["frames"].as_array().unwrap().len());
+        assert!(
+            objects < 21
+                && said.contains(&format!("small: {objects} objects, {frames} frames, in {}", saved.display()))
+        );
+        assert_eq!(note["pictures"], format!("frame {}", frames - 1), "the last frame is the first that fails");
+        let [truth, method, difference] =
+            ["truth", "method", "difference"].map(|name| std::fs::read(saved.join(format!("{name}.png"))).unwrap());
+        assert!(truth != method && truth != difference);
+        assert!(std::fs::read(saved.join("scene.glb")).unwrap().starts_with(b"glTF"));
+    }
+
+    // The table says the same.
+    let table = stressed(&folder, "");
+    assert_eq!(table.status.code(), Some(1));
+    let table = String::from_utf8(table.stdout).unwrap();
+    let row =
+        |name: &str| table.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{name}: {table}"));
+    let counts = |value: &serde_json::Value| {
+        ["runs", "object_frames", "lost", "differing_pixels", "tied_pixels", "thin_pixels"]
+            .map(|name| number(value, name).to_string())
+    };
+    for method in &methods {
+        let words: Vec<_> =
+            row(method["label"].as_str().unwrap()).split_whitespace().skip(1).map(str::to_owned).collect();
+        assert_eq!(words, counts(method));
+    }
+    for family in &families {
+        let rule = family["rule"].as_str().unwrap();
+        let words: Vec<_> =
+            row(family["family"].as_str().unwrap()).split(rule).nth(1).unwrap().split_whitespace().collect();
+        assert_eq!(words[..6], counts(family));
+        assert_eq!(
+            [words[7], words[8]],
+            ["spare_depths", "fewest_pixels"].map(|name| number(family, name).to_string())
+        );
+        let spare_px = family["spare_px"].as_f64().unwrap();
+        assert_eq!(words[6], format!("{spare_px:.5}"));
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn stress_without_a_failure_ends_with_0() {
+    let folder = std::env::temp_dir();
+    let passed = sightline(&format!(
+        "stress --method none --case near-plane/0 --bodies 2 --size 16x16 --out {}",
+        folder.display()
+    ));
+    let said = String::from_utf8_lossy(&passed.stderr).into_owned();
+    assert_eq!((passed.status.code(), said.as_str()), (Some(0), ""));
+    assert!(String::from_utf8(passed.stdout)
+        .unwrap()
+        .ends_with("8 of 8 scenes without a meaning were refused by the name of their object\n"));
+}
