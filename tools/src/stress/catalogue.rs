@@ -226,4 +226,26 @@ mod tests {
             assert!(count(400) > 3 * count(40), "{}: {} and {}", family.name, count(40), count(400));
         }
     }
+
+    #[test]
+    fn a_name_without_a_seed_is_that_of_seed_0() {
+        assert_eq!(DrillId::parse("creeping").unwrap(), DrillId::parse("creeping/0").unwrap());
+        assert_ne!(DrillId::parse("creeping/1").unwrap(), DrillId::parse("creeping/0").unwrap());
+    }
+
+    #[test]
+    fn sizes_come_in_turn_and_a_camera_stands_still_while_nothing_changes() {
+        let shots = DrillId::parse("ties/0").unwrap().make(4).case.shots;
+        let [home, away] = [shots[0], shots[4]];
+        let still = |sizes: &[[u32; 2]], forgets: &[usize]| {
+            let case = Case::new("", Maker::new("none").scene, vec![home, home, home, away, away]);
+            let drill = Drill { case, sizes: sizes.to_vec(), forgets: forgets.to_vec() };
+            (0..5).filter(|frame| drill.stands_still(*frame)).collect::<Vec<_>>()
+        };
+        assert_eq!(still(&[], &[]), [1, 2, 4]);
+        assert_eq!(still(&[], &[2, 3]), [1, 4]);
+        // In turn: small, large, large, small, large.
+        assert_eq!(still(&[[1, 2], [3, 4], [3, 4]], &[]), [2]);
+        assert_eq!(still(&[[1, 2], [1, 2], [1, 3]], &[]), [1, 4]);
+    }
 }

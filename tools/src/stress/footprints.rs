@@ -135,3 +135,132 @@ impl Covered {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::worlds::{mesh, shot};
+    use culling::View;
+    use glam::{DVec3, Vec3};
+    use scenes::{Projection, Topology};
+
+    const SIDE: u32 = 16;
+    const SNAP_PX: f32 = 1.0 / 256.0;
+
+    /// A triangle from column 6 to 10 and row 6 to 10, 4 to 8 m before a camera that sees 16 m; a pixel is a metre. Its lowest height is 3.58 pixels.
+    fn print() -> Print {
+        let corners = vec![Vec3::new(-2.0, -2.0, -4.0), Vec3::new(2.0, -2.0, -4.0), Vec3::new(0.0, 2.0, -8.0)];
+        let mut maker = crate::stress::worlds::Maker::new("triangle");
+        let triangle = maker.mesh(mesh("triangle", Topology::Triangles, corners, vec![0, 1, 2]));
+        maker.place(triangle, glam::DAffine3::IDENTITY);
+        let projection = Projection::Orthographic { half_height: 8.0, near: 0.0, far: 16.0 };
+        let view = View::new(&shot(DVec3::ZERO, DVec3::NEG_Z, projection), [SIDE; 2], 0, SNAP_PX);
+        let bounds = Bounds { centre_high: [0.0, 0.0, -6.0], half_extent: [2.0; 3], ..Bounds::default() };
+        Print::new(bounds, &view, &maker.scene.meshes, &maker.scene.objects[0], &|_, _| ())
+    }
+
+    fn seen(pixels: &[([u32; 2], f32)]) -> Covered {
+        let (print, mut seen) = (print(), Covered::default());
+        pixels.iter().for_each(|(at, depth)| seen.pixel(&print, *at, *depth, SNAP_PX));
+        seen
+    }
+
+    #[test]
+    fn a_pixel_within_its_footprint_says_what_was_to_spare() {
+        // Farther than the box's nearest depth, 0.75: by a quarter of its bits and more.
+        let one = seen(&[([8, 8], 0.6)]);
+        assert_eq!((one.pixels, one.outside.len(), one.too_near.len()), (1, 0, 0));
+        assert_eq!((one.worst_outside_px, one.worst_slack, one.worst_shift), (0.0, [0.0; 6], 0.0));
+        // The centre at 8.5 is 1.5 from column 10.
+        assert!((one.spare_px - (1.5 + f64::from(SNAP_PX))).abs() < 1e-9, "{}", one.spare_px);
+        let spare = i64::from(print().promised.nearest.to_bits()) - i64::from(0.6f32.to_bits());
+        assert!(spare > 0);
+        assert_eq!(one.spare_depths, Some(spare));
+        // The least of several counts, in either order.
+        let near = 0.7f32;
+        let least = i64::from(print().promised.nearest.to_bits()) - i64::from(near.to_bits());
+        for order in [[0.6, near], [near, 0.6]] {
+            let two = seen(&order.map(|depth| ([7, 8], depth)));
+            assert_eq!((two.pixels, two.spare_depths), (2, Some(least)));
+        }
+    }
+
+    #[test]
+    fn a_pixel_beside_its_footprint_is_outside_by_its_distance() {
+        for (at, away) in [([11, 8], 1.5), ([8, 12], 2.5), ([3, 8], 2.5), ([8, 4], 1.5), ([12, 11], 2.5)] {
+            let one = seen(&[(at, 0.6)]);
+            assert!(one.outside.len() == 1 && one.outside[0].contains(&format!("pixel {at:?}")), "{:?}", one.outside);
+            assert!((one.worst_outside_px - away).abs() < 1e-9, "{at:?}: {}", one.worst_outside_px);
+            assert!((one.spare_px - (f64::from(SNAP_PX) - away)).abs() < 1e-9, "{at:?}: {}", one.spare_px);
+        }
+        let both = seen(&[([11, 8], 0.6), ([8, 12], 0.6), ([8, 8], 0.6)]);
+        assert_eq!((both.pixels, both.outside.len()), (3, 2));
+        assert!((both.worst_outside_px - 2.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_pixel_nearer_than_its_box_is_told_with_its_slack() {
+        let one = seen(&[([8, 8], 0.875)]);
+        let [near] = one.too_near.as_slice() else { panic!("{:?}", one.too_near) };
+        assert!(!near.thin && near.at == [8, 8] && one.spare_depths.is_some_and(|spare| spare < 0));
+        // 1/8 nearer than 0.75, and the box's depths range over 1/4: half of a range, in steps of 1/256 pixel.
+        assert!((near.slack - 128.0).abs() < 2.0, "{}", near.slack);
+        assert!((near.height_px - 3.578).abs() < 1e-3, "{}", near.height_px);
+        assert_eq!(one.worst_slack, [0.0, 0.0, 0.0, 0.0, near.slack, 0.0], "between 1 and 4 pixels high");
+        assert_eq!(one.worst_shift, near.slack * near.height_px);
+    }
+
+    #[test]
+    fn what_crosses_the_near_plane_promises_nothing() {
+        let (mut print, mut seen) = (print(), Covered::default());
+        print.promised.crosses_near = true;
+        seen.pixel(&print, [15, 15], 1.0, SNAP_PX);
+        assert_eq!((seen.pixels, seen.outside.len(), seen.too_near.len()), (0, 0, 0));
+        // An empty footprint holds no pixel.
+        print.promised.crosses_near = false;
+        print.promised.empty = true;
+        seen.pixel(&print, [8, 8], 0.6, SNAP_PX);
+        assert_eq!((seen.pixels, seen.outside.len()), (1, 1));
+    }
+
+    #[test]
+    fn joined_frames_add_up_and_keep_the_worst_of_both() {
+        let near = |height_px| TooNear { at: [1, 2], thin: false, height_px, slack: 1.0, text: String::new() };
+        let one = Covered {
+            objects: 3,
+            pixels: 40,
+            outside: vec!["one".into()],
+            too_near: vec![near(1.0)],
+            worst_outside_px: 0.5,
+            spare_px: 0.25,
+            spare_depths: Some(9),
+            worst_slack: [1.0, 0.0, 3.0, 0.0, 0.0, 6.0],
+            worst_shift: 7.0,
+        };
+        let other = Covered {
+            objects: 5,
+            pixels: 80,
+            outside: vec!["two".into()],
+            too_near: vec![near(2.0)],
+            worst_outside_px: 0.75,
+            spare_px: 0.125,
+            spare_depths: Some(4),
+            worst_slack: [0.5, 2.0, 0.0, 4.0, 0.0, 5.0],
+            worst_shift: 8.0,
+        };
+        for (first, second) in [(&one, &other), (&other, &one)] {
+            let mut both = Covered::default();
+            both.join(first.clone());
+            assert_eq!(
+                (both.objects, both.pixels, both.spare_depths),
+                (first.objects, first.pixels, first.spare_depths)
+            );
+            both.join(second.clone());
+            both.join(Covered::default());
+            assert_eq!((both.objects, both.pixels), (8, 120));
+            assert_eq!(both.outside.len() + both.too_near.len(), 4);
+            assert_eq!((both.worst_outside_px, both.spare_px, both.spare_depths), (0.75, 0.125, Some(4)));
+            assert_eq!((both.worst_slack, both.worst_shift), ([1.0, 2.0, 3.0, 4.0, 0.0, 6.0], 8.0));
+        }
+    }
+}

@@ -61,4 +61,31 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn choices_of_a_range_lie_at_its_beginning_and_at_the_default() {
+        assert_eq!(choices("0..=10", "3"), ["0", "1", "6", "3"]);
+        assert_eq!(choices("5..=6", "5"), ["5", "6", "5"]);
+        assert_eq!(choices("2..=8", "4"), ["2", "3", "8", "4"]);
+        assert_eq!(choices("7..=7", "7"), ["7", "7"]);
+        assert_eq!(choices("a|b|c", "b"), ["a", "b", "c"]);
+        assert_eq!(choices("0.0..=1.0", "0.5"), ["0.5"], "a range of fractions keeps its default");
+    }
+
+    /// A method that leaves out details, or is allowed errors, would fail for what it was asked to do.
+    #[test]
+    fn no_setting_by_chance_asks_for_errors() {
+        let mut random = Random::new(5);
+        let mut found = 0;
+        for entry in culling::METHODS {
+            let plain = Subject { options: entry.default_options(), make: entry.make };
+            for option in entry.options.iter().filter(|option| asks_for_errors(option)) {
+                found += 1;
+                let default = &plain.options.all()[option.name];
+                let tried = (0..50).map(|_| by_chance(&plain, &mut random).options.all()[option.name].clone());
+                assert!(tried.into_iter().all(|value| value == *default), "{}.{}", entry.id, option.name);
+            }
+        }
+        assert!(found > 3, "only {found} such options");
+    }
 }

@@ -98,6 +98,7 @@ fn leave_out(scene: &mut Scene, first: usize, count: usize) {
 mod tests {
     use super::*;
     use crate::stress::catalogue::DrillId;
+    use glam::DVec3;
 
     #[test]
     fn only_what_is_needed_is_left() {
@@ -128,5 +129,62 @@ mod tests {
         assert!(needed(&drill), "the drill's fifth shot is its own");
         let small = shortened(&drill, &mut needed);
         assert_eq!((small.case.shots.len(), small.forgets.clone(), small.size(0)), (1, vec![0], size));
+    }
+
+    /// A failure of the first frame needs no other; one that needs all frames keeps all.
+    #[test]
+    fn as_few_frames_are_left_as_still_fail() {
+        let drill = DrillId::parse("creeping/0").unwrap().make(3);
+        let frames = drill.case.shots.len();
+        for needed in [1, 2, 5, frames] {
+            let mut tried = Vec::new();
+            let small = shortened(&drill, &mut |drill| {
+                tried.push(drill.case.shots.len());
+                drill.case.shots.len() >= needed
+            });
+            assert_eq!(small.case.shots.len(), needed);
+            assert_eq!(small.case.shots, drill.case.shots[..needed], "the later frames go first");
+            assert_eq!(tried[..needed.min(frames - 1)], (1..frames).take(needed).collect::<Vec<_>>());
+        }
+    }
+
+    /// What is left out takes its motion along, and the motion of what comes later stays with its object.
+    #[test]
+    fn motion_stays_with_its_objects() {
+        let scene = DrillId::parse("moving/1").unwrap().make(12).case.scene;
+        let moving = |scene: &Scene| -> Vec<(String, DVec3)> {
+            let Motion::Orbits(orbits) = &scene.motion else { panic!("bodies go around") };
+            orbits.iter().map(|orbit| (scene.objects[orbit.object as usize].name.clone(), orbit.axis)).collect()
+        };
+        let all = moving(&scene);
+        for (first, count) in [(0, 1), (3, 2), (5, 1), (6, 4), (11, 9)] {
+            let mut less = scene.clone();
+            leave_out(&mut less, first, count);
+            let gone: Vec<_> = scene.objects.iter().skip(first).take(count).map(|object| object.name.clone()).collect();
+            assert_eq!(less.objects.len(), scene.objects.len() - gone.len());
+            assert!(less.objects.iter().all(|object| !gone.contains(&object.name)));
+            let stays: Vec<_> = all.iter().filter(|(name, _)| !gone.contains(name)).cloned().collect();
+            assert_eq!(moving(&less), stays, "{first} and {count} on");
+        }
+    }
+
+    #[test]
+    fn objects_are_tried_in_ever_smaller_runs_and_deformed_worlds_stay_whole() {
+        let drill = DrillId::parse("creeping/0").unwrap().make(10);
+        let mut lengths = Vec::new();
+        let small = thinned(drill.clone(), &mut |drill| {
+            lengths.push(drill.case.scene.objects.len());
+            false
+        });
+        assert_eq!(small.case.scene.objects, drill.case.scene.objects, "nothing was left out that was needed");
+        // Of 11: runs of 6, 3, 2 and 1, the last of each as long as what is left.
+        assert_eq!(lengths, [&[5, 6][..], &[8, 8, 8, 9], &[9, 9, 9, 9, 9, 10], &[10; 11]].concat());
+        let bending = DrillId::parse("bending/0").unwrap().make(20);
+        let mut runs = 0;
+        let whole = thinned(bending.clone(), &mut |_| {
+            runs += 1;
+            true
+        });
+        assert_eq!((runs, whole.case.scene.objects.len()), (0, bending.case.scene.objects.len()));
     }
 }
