@@ -1,4 +1,5 @@
-use super::{stage_times, stall, ticks_between, StageTime, TimerMode};
+use super::{stage_times, stall, ticks_between, Queries, QueryStore, StageTime, TimerMode};
+use crate::lock::lock;
 use crate::recorder::{Op, Recorded};
 use crate::DeviceKind;
 use shaders::{Bound, ResourceId};
@@ -95,4 +96,13 @@ fn a_wait_costs_what_its_stages_do_not() {
     assert_eq!(row(7, &stages), StageTime { label: "frame/read_back:late".to_owned(), ms: 2.5 });
     assert_eq!(row(7, &[]).ms, 7.0);
     assert_eq!(row(4, &stages).ms, 0.0);
+}
+
+/// Making pools takes longer than many a frame.
+#[test]
+fn a_finished_frame_leaves_its_pools_to_the_next_one() {
+    let store = QueryStore::default();
+    store.give_back(Queries { timestamps: None, statistics: None });
+    store.give_back(Queries { timestamps: None, statistics: None });
+    assert_eq!(lock(&store.0).len(), 2);
 }

@@ -1,8 +1,8 @@
 //! Lists of draws: how many commands of one are drawn, from where, and what each query counts.
 
 use engine::{
-    Buffer, Extra, Faces, Format, Frame, FrameReport, Gpu, GpuOptions, Image, IndexedIndirect, OcclusionQueries,
-    Placement, Primitives, Queried, Shapes, Surface, Target, TimerMode,
+    Buffer, DepthFormat, Extra, Faces, Format, Frame, FrameReport, Gpu, GpuOptions, Image, IndexedIndirect,
+    OcclusionQueries, Placement, Primitives, Queried, Shapes, Surface, Target, TimerMode,
 };
 use harness::{gpu, options};
 use shaders::engine::SpinPixels;
@@ -192,6 +192,7 @@ fn each_command_is_counted_by_its_own_query() {
         });
         assert_eq!(drawn, None, "ten triangles are more than any known picture's");
         assert_eq!((report.draws.len(), report.submissions), (0, 1));
+        assert_eq!(queries.counts_samples(), gpu.has(Extra::OcclusionQueryPrecise));
         match queries.counts_samples() {
             true => assert_eq!(counted, [3, 1, 2, 4].map(|triangles| triangles * PIXELS)),
             false => assert!(counted.iter().all(|samples| *samples > 0), "{counted:?}"),
@@ -201,8 +202,9 @@ fn each_command_is_counted_by_its_own_query() {
             let none = IndexedIndirect { max_draws: 0, ..list.draw() };
             f.query_objects(SpinPixels {}, none, Queried { queries: &queries, first: 0 }, target);
             f.query_objects(SpinPixels {}, list.draw(), Queried { queries: &queries, first: 0 }, target);
+            f.query_objects(SpinPixels {}, list.draw(), Queried { queries: &queries, first: 3 }, target);
         });
-        assert_eq!((report.draws.len(), report.skips.len()), (1, 1));
+        assert_eq!((report.draws.len(), report.skips.len()), (2, 1));
         assert_eq!(report.skips[0].reason, "nothing to ask");
         assert!(queries.read(0..3).unwrap().iter().all(|samples| *samples > 0));
     });
@@ -254,11 +256,24 @@ fn what_a_target_holds_is_kept_texel_by_texel() {
     }
 }
 
+/// Keeps 16 texels of depth in a buffer with room for 15.
+fn keep_too_much(gpu: &Gpu) {
+    let canvas = Canvas::new(gpu);
+    let short = Buffer::<f32>::new(gpu, "test.short", 15, Placement::ReadBack).unwrap();
+    gpu.frame().copy_depth("test/keep_depth", &canvas.target, &short);
+}
+
 #[test]
 #[should_panic(expected = "15 words for 16 texels")]
 fn a_picture_is_not_kept_where_there_is_no_room() {
-    let gpu = gpu();
-    let canvas = Canvas::new(&gpu);
-    let short = Buffer::<f32>::new(&gpu, "test.short", 15, Placement::ReadBack).unwrap();
-    gpu.frame().copy_depth("test/keep_depth", &canvas.target, &short);
+    keep_too_much(&gpu());
+}
+
+/// Other formats are copied by a stage, which would write beyond the buffer.
+#[test]
+#[should_panic(expected = "15 words for 4x4 texels")]
+fn a_picture_of_another_depth_format_is_not_kept_where_there_is_no_room() {
+    let _turn = gpu();
+    let depth = DepthFormat::StandardD32;
+    keep_too_much(&Gpu::open(&GpuOptions { timer: Some(TimerMode::Split), depth, ..options() }).unwrap());
 }
