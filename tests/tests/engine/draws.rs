@@ -1,8 +1,8 @@
 //! Lists of draws: how many commands of one are drawn, from where, and what each query counts.
 
 use engine::{
-    Buffer, DepthFormat, Extra, Faces, Format, Frame, FrameReport, Gpu, GpuOptions, Image, IndexedIndirect,
-    OcclusionQueries, Placement, Primitives, Queried, Shapes, Surface, Target, TimerMode,
+    Buffer, DepthFormat, Extra, Faces, Format, Frame, FrameReport, Gpu, GpuOptions, Image, IndexedIndirect, KeptSample,
+    OcclusionQueries, Placement, Primitives, Queried, Samples, Shapes, Surface, Target, TimerMode,
 };
 use harness::{gpu, options};
 use shaders::engine::SpinPixels;
@@ -110,6 +110,12 @@ fn plain() -> Gpu {
     Gpu::open(&options).unwrap()
 }
 
+/// The rows of a frame's table. A device without timestamps has none.
+fn assert_rows(gpu: &Gpu, report: &FrameReport, expected: &[&str]) {
+    let rows: Vec<_> = report.stages.iter().map(|stage| stage.label.as_str()).collect();
+    assert_eq!(rows, if gpu.has(Extra::Timestamps) { expected } else { &[] });
+}
+
 /// Both ways of drawing lists: with all that the device has, and with a call a command.
 fn on_both(test: impl Fn(&Gpu)) {
     let gpu = gpu();
@@ -168,8 +174,7 @@ fn draws_that_show_no_object_draw_as_much_and_are_not_among_the_reports() {
         });
         assert_eq!((drawn, report.draws.len()), (Some(1 + 2 + 1), 0));
         // On a device that draws a command a call, each draw is still one row.
-        let rows: Vec<_> = report.stages.iter().map(|stage| stage.label.as_str()).collect();
-        assert_eq!(rows, ["target/clear", "engine/spin_pixels", "engine/spin_pixels"]);
+        assert_rows(gpu, &report, &["target/clear", "engine/spin_pixels", "engine/spin_pixels"]);
     });
 }
 
@@ -236,8 +241,7 @@ fn what_a_target_holds_is_kept_texel_by_texel() {
     f.copy_items("test/keep_items", &target, &items);
     f.copy_items("test/keep_nothing", &target.depth_only(), &items);
     let report = f.finish().unwrap();
-    let rows: Vec<_> = report.stages.iter().map(|stage| stage.label.as_str()).collect();
-    assert_eq!(rows, ["target/clear", "test/keep_depth", "test/keep_items"]);
+    assert_rows(&gpu, &report, &["target/clear", "test/keep_depth", "test/keep_items"]);
     assert_eq!(depths.read().unwrap(), [[0.0; 8].as_slice(), &[9.0; 2]].concat());
     assert_eq!(items.read().unwrap(), [[ITEM_NONE; 8].as_slice(), &[7; 2]].concat());
     assert_eq!(colour.read().unwrap(), [0xff; 32], "nobody's index is full bytes");
@@ -254,6 +258,67 @@ fn what_a_target_holds_is_kept_texel_by_texel() {
             assert_eq!(depths.read().unwrap()[..texels], [wanted; 8], "{surface:?}, read only: {read_only}");
         }
     }
+}
+
+/// A triangle covers all samples of all pixels: what stages read of four samples, and what is left of them, is what one sample shows. Vulkan promises four
+/// samples of these formats on each device.
+#[test]
+fn four_samples_of_one_depth_and_colour_are_resolved_to_it() {
+    let gpu = gpu();
+    let size = [SIDE, 2];
+    let image = |name, format, samples| Image::with_samples(&gpu, name, format, size, samples).unwrap();
+    let colours = [1, 4].map(|samples| image("test.colour", Format::Colour, samples));
+    let depths = [1, 4].map(|samples| image("test.depth", Format::Depth, samples));
+    let resolved = Buffer::<f32>::new(&gpu, "test.resolved", 8, Placement::Storage).unwrap();
+    let kept = Buffer::<f32>::new(&gpu, "test.kept", 8, Placement::ReadBack).unwrap();
+    let single = Target {
+        size,
+        colour: Some((colours[0].view(), Format::Colour)),
+        item: None,
+        depth: depths[0].view(),
+        depth_read_only: false,
+        strictly_nearer: false,
+        samples: None,
+    };
+    let samples = Samples {
+        count: 4,
+        colour: Some(colours[1].view()),
+        depth: depths[1].view(),
+        kept: KeptSample::Farthest,
+        resolved: resolved.all().into(),
+    };
+    let shapes = Shapes { corners: 3, count: 1, surface: Surface::Opaque };
+    let run = |target: &Target, resolves: bool| {
+        let mut f = gpu.frame();
+        f.fill("test/fill", &kept, 0);
+        f.clear(target);
+        f.draw_shapes(SpinPixels {}, shapes, target);
+        f.copy_depth("test/keep_depth", target, &kept);
+        let report = if resolves { f.finish() } else { f.finish_unresolved() }.unwrap();
+        (report, kept.read().unwrap(), colours[0].read().unwrap())
+    };
+    let (_, depth, picture) = run(&single, true);
+    assert_eq!(depth, [0.5; 8]);
+    assert!(picture.iter().any(|byte| *byte > 0));
+    // The picture is black again, and stays so unless the colours are resolved.
+    let mut f = gpu.frame();
+    f.clear(&single);
+    f.finish().unwrap();
+    let several = Target { samples: Some(samples), ..single };
+    let (report, depth, left) = run(&several, false);
+    assert_eq!((depth, left), (vec![0.5; 8], vec![0; 32]));
+    let steps = [
+        "test/fill",
+        "target/clear",
+        "engine/spin_pixels",
+        "engine/resolve_depth",
+        "target/keep_resolved_depth",
+        "test/keep_depth",
+    ];
+    assert_rows(&gpu, &report, &steps);
+    let (report, depth, resolved) = run(&several, true);
+    assert_eq!((depth, resolved), (vec![0.5; 8], picture));
+    assert_rows(&gpu, &report, &[&steps[..], &["target/resolve_colour"]].concat());
 }
 
 /// Keeps 16 texels of depth in a buffer with room for 15.

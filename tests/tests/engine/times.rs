@@ -3,6 +3,7 @@
 use engine::{Buffer, DeviceKind, Error, Extra, FrameReport, Gpu, Placement, Shapes, StageTime, Surface, TimerMode};
 use harness::gpu;
 use shaders::engine::{SpinPixels, SpinWords};
+use std::time::Instant;
 
 /// Words that a light stage spins: one group.
 const LIGHT: u32 = 64;
@@ -87,6 +88,35 @@ fn a_frame_that_is_timed_alone_has_no_rows() {
     let report = f.finish().unwrap();
     assert_eq!((report.stages, report.submissions), (Vec::<StageTime>::new(), 2));
     assert!(report.frame_ms > 0.0 && report.host_ms > 0.0);
+}
+
+/// All times of a frame lie within the time between its beginning and its end, as the caller measures it. Work of the host before the first submission
+/// and between two belongs to the frame, with a row of its own.
+#[test]
+fn no_time_of_a_frame_is_longer_than_the_frame_took() {
+    let gpu = gpu();
+    let words = Buffer::with_data(&gpu, "test.words", &[1u32; 64], Placement::ReadBack).unwrap();
+    let spin = || SpinWords { words: words.all(), word_count: LIGHT };
+    let begun = Instant::now();
+    let mut f = gpu.frame();
+    f.on_host("frame/before", || (0..100_000).fold(1u32, |sum, step| std::hint::black_box(sum ^ step)));
+    f.dispatch(spin(), LIGHT);
+    f.read(&words).unwrap();
+    f.on_host("frame/between", || (0..100_000).fold(1u32, |sum, step| std::hint::black_box(sum ^ step)));
+    f.dispatch(spin(), LIGHT);
+    let report = f.finish().unwrap();
+    let took_ms = begun.elapsed().as_secs_f64() * 1e3;
+    let within = |what: &str, ms: f64| assert!(ms > 0.0 && ms <= took_ms, "{what}: {ms} of {took_ms} ms");
+    within("the frame", report.frame_ms);
+    within("the host", report.host_ms);
+    let of_host = |label: &str| report.stages.iter().find(|stage| stage.label == label).map(|stage| stage.ms);
+    let rows = [of_host("frame/before"), of_host("frame/between")];
+    if gpu.has(Extra::Timestamps) {
+        rows.iter().for_each(|row| within("a row", row.expect("a row of its own")));
+    } else {
+        assert_eq!(rows, [None; 2]);
+    }
+    assert!(report.frame_ms >= rows.iter().flatten().sum(), "{rows:?} of {} ms", report.frame_ms);
 }
 
 /// A pool has 4096 timestamps: one before the first stage, and one after each.
