@@ -334,6 +334,23 @@ fn a_picture_is_not_kept_where_there_is_no_room() {
     keep_too_much(&gpu());
 }
 
+/// Other formats are copied by a stage, 64 texels a group: the last group too. 1 is far, and is kept as the reversed 0.
+#[test]
+fn a_picture_of_another_depth_format_is_kept_to_its_last_texel() {
+    let _turn = gpu();
+    let depth = DepthFormat::StandardD32;
+    let gpu = Gpu::open(&GpuOptions { timer: Some(TimerMode::Split), depth, ..options() }).unwrap();
+    let image = Image::new(&gpu, "test.depth", Format::Depth, [16, 9]).unwrap();
+    let canvas = Canvas::new(&gpu);
+    let target = Target { size: [16, 9], depth: image.view(), ..canvas.target.depth_only() };
+    let kept = Buffer::with_data(&gpu, "test.kept", &[9.0f32; 145], Placement::ReadBack).unwrap();
+    let mut f = gpu.frame();
+    f.clear(&target);
+    f.copy_depth("test/keep_depth", &target, &kept);
+    f.finish().unwrap();
+    assert_eq!(kept.read().unwrap(), [[0.0; 144].as_slice(), &[9.0]].concat());
+}
+
 /// Other formats are copied by a stage, which would write beyond the buffer.
 #[test]
 #[should_panic(expected = "15 words for 4x4 texels")]

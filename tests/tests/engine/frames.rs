@@ -11,6 +11,7 @@ use scenes::Projection;
 use shaders::engine::{SpinPixels, SpinWords};
 use shaders::types::DrawCommand;
 use sightline::run::targets::Targets;
+use std::time::Instant;
 
 /// Twin of `engine/spin_words`.
 pub fn spun(word: u32) -> u32 {
@@ -91,20 +92,27 @@ fn what_the_host_does_for_the_device_counts_as_the_frames_time() {
     let work = || std::thread::sleep(long);
     let long_ms = long.as_secs_f64() * 1e3;
 
+    let begun = Instant::now();
     let mut f = gpu.frame();
     f.on_host("frame/work", work);
     f.dispatch(spin(&buffer), 64);
-    let before = f.finish().unwrap();
+    let before = (f.finish().unwrap(), begun.elapsed());
+    let begun = Instant::now();
     let mut f = gpu.frame();
     f.dispatch(spin(&buffer), 64);
     f.read(&buffer).unwrap();
     f.on_host("frame/work", work);
     f.dispatch(spin(&buffer), 64);
-    let between = f.finish().unwrap();
-    for report in [before, between] {
+    let between = (f.finish().unwrap(), begun.elapsed());
+    for (report, took) in [before, between] {
         let row = report.stages.iter().find(|stage| stage.label == "frame/work").expect("a row of its own");
         assert!(row.ms >= long_ms && report.frame_ms >= row.ms, "{} of {}", row.ms, report.frame_ms);
         assert!(report.frame_ms < 2.0 * row.ms, "counted twice: {} ms", report.frame_ms);
+        let recording_and_work = report.host_ms + row.ms;
+        assert!(
+            recording_and_work <= took.as_secs_f64() * 1e3,
+            "{recording_and_work} ms of {took:?}: it is no recording"
+        );
     }
     let mut f = gpu.frame();
     work();
