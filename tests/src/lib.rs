@@ -7,6 +7,7 @@ pub mod confetti;
 pub mod device;
 pub mod footprints;
 pub mod golden;
+pub mod guarded;
 pub mod hazards;
 pub mod lab;
 pub mod laws;

@@ -5,7 +5,7 @@ use culling::frustum::twin::{self, Shape};
 use culling::{DrawList, Method, Setup, View, World};
 use engine::{Buffer, Frame, Gpu, Placement, Target};
 use harness::worlds::{self, special_projections};
-use harness::{assert_caught, assert_none, gpu, laws, sessions, Random, Subject};
+use harness::{assert_caught, assert_none, gpu, guarded, laws, sessions, Random, Subject};
 use scenes::{Pose, Shot};
 use shaders::frustum::{CountPlanes, CountPlanesConstants, TestShapes, TestShapesConstants};
 use shaders::types::*;
@@ -33,7 +33,7 @@ fn run(gpu: &Gpu, bodies: &Bodies, shape: u32, view: CullView) -> (Vec<u32>, u32
     let locals = Buffer::with_data(gpu, "test.locals", &bodies.locals, Placement::Storage).unwrap();
     let meshes: Vec<u32> = (0..bodies.bounds.len() as u32).collect();
     let meshes = Buffer::with_data(gpu, "test.meshes", &meshes, Placement::Storage).unwrap();
-    let kept = Buffer::with_data(gpu, "test.kept", &vec![7u32; bodies.bounds.len()], Placement::Storage).unwrap();
+    let kept = guarded::words(gpu, bodies.bounds.len());
     let list = Buffer::with_data(gpu, "test.blocks", &list_of(&all_blocks()), Placement::Storage).unwrap();
     let planes = Buffer::with_data(gpu, "test.planes", &[0u32], Placement::Storage).unwrap();
     let (object_count, blocks) = (bodies.bounds.len() as u32, list.all());
@@ -63,7 +63,7 @@ fn run(gpu: &Gpu, bodies: &Bodies, shape: u32, view: CullView) -> (Vec<u32>, u32
     f.dispatch_indirect(test, blocks);
     f.dispatch_indirect(count, blocks);
     f.finish().unwrap();
-    (kept.read().unwrap(), planes.read().unwrap()[0])
+    (guarded::read(&kept), planes.read().unwrap()[0])
 }
 
 /// Bodies around a camera; every second one is moved until what is tested of it touches a plane.

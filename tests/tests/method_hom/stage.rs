@@ -6,11 +6,12 @@ use culling::farthest::{MapKind, Structure};
 use engine::{Buffer, Gpu, Placement};
 use harness::occludees::Occludees;
 use harness::worlds::special_projections;
-use harness::{gpu, Random};
+use harness::{gpu, guarded, Random};
 use scenes::{Pose, Shot};
 
 const SIZE: [u32; 2] = [161, 97];
-const BOXES: usize = 2_000;
+/// The last block is not full.
+const BOXES: usize = 2_007;
 
 /// What the stage finds visible.
 fn run(gpu: &Gpu, input: &Occludees, kept: &[u32], kind: MapKind) -> Vec<u32> {
@@ -22,7 +23,7 @@ fn run(gpu: &Gpu, input: &Occludees, kept: &[u32], kind: MapKind) -> Vec<u32> {
     let kept = Buffer::with_data(gpu, "test.kept", kept, storage).unwrap();
     let blocks = culling::world::listed_blocks((BOXES as u32).div_ceil(shaders::types::BLOCK_OBJECTS));
     let blocks = Buffer::with_data(gpu, "test.blocks", &blocks, storage).unwrap();
-    let visible = Buffer::with_data(gpu, "test.visible", &vec![7u32; BOXES], storage).unwrap();
+    let visible = guarded::words(gpu, BOXES);
     let stage = shaders::farthest::TestBounds {
         bounds: bounds.all(),
         kept: kept.all(),
@@ -37,7 +38,7 @@ fn run(gpu: &Gpu, input: &Occludees, kept: &[u32], kind: MapKind) -> Vec<u32> {
     let mut f = gpu.frame();
     f.dispatch_indirect(stage, blocks.all());
     f.finish().unwrap();
-    visible.read().unwrap()
+    guarded::read(&visible)
 }
 
 /// The twin's visible set with every quantity shifted by `step` of its rounding.

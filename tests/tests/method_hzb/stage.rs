@@ -4,11 +4,13 @@ use culling::hzb::twin::{self, PyramidTest};
 use engine::{Buffer, Gpu, Placement};
 use harness::occludees::Occludees;
 use harness::worlds::special_projections;
-use harness::{gpu, Random};
+use harness::{gpu, guarded, Random};
 use scenes::{Pose, Shot};
 
 const SIZE: [u32; 2] = [161, 97];
-const BOXES: usize = 8_000;
+/// The last block is not full.
+const BOXES: usize = 8_007;
+
 struct Input {
     occludees: Occludees,
     seen: Vec<u32>,
@@ -29,11 +31,10 @@ fn run(gpu: &Gpu, input: &Input) -> [Vec<u32>; 2] {
         Buffer::with_data(gpu, "test.texels", &twin::pyramid(&input.occludees.depth, SIZE, &levels), storage).unwrap();
     let levels = Buffer::with_data(gpu, "test.levels", &levels, storage).unwrap();
     let bounds = Buffer::with_data(gpu, "test.bounds", &input.occludees.bounds, storage).unwrap();
-    let seen = Buffer::with_data(gpu, "test.seen", &vec![7u32; BOXES], storage).unwrap();
+    let (seen, newly) = (guarded::words(gpu, BOXES), guarded::words(gpu, BOXES));
     let blocks = culling::world::listed_blocks((BOXES as u32).div_ceil(shaders::types::BLOCK_OBJECTS));
     let blocks = Buffer::with_data(gpu, "test.blocks", &blocks, storage).unwrap();
     let seen_before = Buffer::with_data(gpu, "test.seen_before", &input.seen, storage).unwrap();
-    let newly = Buffer::with_data(gpu, "test.newly", &vec![7u32; BOXES], storage).unwrap();
     let stage = shaders::hzb::TestBounds {
         bounds: bounds.all(),
         levels: levels.all(),
@@ -50,7 +51,7 @@ fn run(gpu: &Gpu, input: &Input) -> [Vec<u32>; 2] {
     let mut f = gpu.frame();
     f.dispatch_indirect(stage, blocks.all());
     f.finish().unwrap();
-    [seen.read().unwrap(), newly.read().unwrap()]
+    [guarded::read(&seen), guarded::read(&newly)]
 }
 
 /// The twin's visible set with every quantity shifted by its rounding.
