@@ -21,7 +21,7 @@ use std::process::{Command, Stdio};
 /// They run in this order until one fails.
 const TESTS: [(&str, &[(&str, &str)]); 16] = [
     ("draw", &[("golden", ""), ("materials", "")]),
-    ("engine", &[("engine", ""), ("samples", "")]),
+    ("engine", &[("without", "twin"), ("engine", ""), ("samples", ""), ("depth_formats", "")]),
     ("eovc", &[("stages", "twin"), ("method_eovc", "")]),
     ("example", &[("engine", "")]),
     ("farthest", &[("method_hom", "")]),
