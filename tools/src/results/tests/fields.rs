@@ -25,6 +25,7 @@ pub(crate) fn distinct() -> Results {
             triangles: 1002,
             hash: "cafe".into(),
             moving_bounds: "union".into(),
+            shading: "lambert".into(),
         },
         path: "a path".into(),
         speed: 1003.5,
@@ -150,7 +151,7 @@ fn distinct_json() -> Value {
             "name": "a device", "type": "discrete", "driver": "a driver", "api_version": "1.3.9", "timer_mode": "submits",
             "depth_format": "D16_UNORM", "details": { "lacks": "a feature" },
         },
-        "scene": { "name": "a scene", "objects": 1001, "triangles": 1002, "hash": "cafe", "moving_bounds": "union" },
+        "scene": { "name": "a scene", "objects": 1001, "triangles": 1002, "hash": "cafe", "moving_bounds": "union", "shading": "lambert" },
         "path": "a path", "speed": 1003.5, "seed": 1004, "size": [1005, 1006], "frames": 3, "methods": [method],
     })
 }

@@ -37,7 +37,7 @@ fn each_column_of_the_table_is_its_own_field() {
 a scene: 1001 objects, 1002 triangles · path a path at speed 1003.5 · 3 frames of 1005x1006
 a device (discrete) · a driver · Vulkan 1.3.9
 
-method        frame  /none  /ref    p95  drawn  C/R %  false neg.  diff px  PSNR  triangles  overdraw
+method        frame  /none  /ref    p95  drawn   C/R %  false neg.  diff px  PSNR  triangles  overdraw
 ";
     assert!(text.starts_with(expected), "{text}");
     let cells = ["10.00", "0.25", "1.25", "13.00", "1234", "87.5", "9", "12.34", "41.3", "567.8k", "2.34"];
