@@ -31,11 +31,12 @@ fn woc(seeds: &str) -> Setting {
 #[test]
 fn each_setting_on_which_numbers_depend_is_in_the_key() {
     type Case = (Results, Shading, SweepPlan, Vec<Setting>);
+    type Change = fn(&mut Case);
     let case = || -> Case {
         let header = Results { methods: Vec::new(), command: String::new(), ..distinct() };
         (header, Shading::Lambert, plan(vec![], None, vec![]), vec![setting("ref", &[]), woc("2")])
     };
-    let changes: [(&str, fn(&mut Case)); 22] = [
+    let changes: [(&str, Change); 22] = [
         ("nothing", |_| ()),
         ("version", |c| c.0.sightline_version = "9.8.8".into()),
         ("device", |c| c.0.device.name = "another".into()),
