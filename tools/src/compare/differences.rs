@@ -25,7 +25,7 @@ impl std::fmt::Display for Difference {
 /// Name, whether it changes what a frame shows, and value.
 type Fact = (&'static str, bool, fn(&Results) -> String);
 
-const FACTS: [Fact; 13] = [
+const FACTS: [Fact; 17] = [
     ("scene", true, |run| run.scene.name.clone()),
     ("objects", true, |run| run.scene.objects.to_string()),
     ("triangles", true, |run| run.scene.triangles.to_string()),
@@ -39,6 +39,10 @@ const FACTS: [Fact; 13] = [
     ("type of device", false, |run| run.device.kind.clone()),
     ("driver", false, |run| run.device.driver.clone()),
     ("depth format", true, |run| run.device.depth_format.clone()),
+    ("samples a pixel", false, |run| run.device.details.get("samples").map_or("1".to_owned(), String::clone)),
+    ("features that are missing", false, |run| run.device.details.get("lacks").cloned().unwrap_or_default()),
+    ("bounds of what moves", false, |run| run.scene.moving_bounds.clone()),
+    ("shading", true, |run| run.scene.shading.clone()),
 ];
 
 /// Returns a line if the two runs timed stages differently: times of stages then cannot be compared, frame times can. Older versions

@@ -1,5 +1,7 @@
 //! Made-up runs with a planted change each: the comparison sees it, and the gates do.
 
+mod figures;
+
 use super::*;
 use crate::results::tests::results;
 use crate::results::Stage;
@@ -168,7 +170,7 @@ fn what_only_one_run_has_is_listed() {
 #[test]
 fn runs_that_differ_are_refused_by_name() {
     type Change = fn(&mut Results);
-    let changes: [(&str, bool, Change); 13] = [
+    let changes: [(&str, bool, Change); 17] = [
         ("scene: city in A, rooms in B", true, |b| b.scene.name = "rooms".into()),
         ("objects: 94000 in A, 1 in B", true, |b| b.scene.objects = 1),
         ("triangles: 18800000 in A, 1 in B", true, |b| b.scene.triangles = 1),
@@ -184,10 +186,20 @@ fn runs_that_differ_are_refused_by_name() {
         ("depth format: D32_SFLOAT (reversed) in A, D16_UNORM in B", true, |b| {
             b.device.depth_format = "D16_UNORM".into()
         }),
+        ("samples a pixel: 1 in A, 4 in B", false, |b| _ = b.device.details.insert("samples".into(), "4".into())),
+        ("features that are missing: nothing in A, tiling in B", false, |b| {
+            _ = b.device.details.insert("lacks".into(), "tiling".into())
+        }),
+        ("bounds of what moves: union in A, in-place in B", false, |b| b.scene.moving_bounds = "in-place".into()),
+        ("shading: lambert in A, textured in B", true, |b| b.scene.shading = "textured".into()),
     ];
     for (named, other_frames, change) in changes {
         let (mut a, mut b) = (run(), run());
-        (a.scene.hash, b.scene.hash) = ("aa".into(), "aa".into());
+        for run in [&mut a, &mut b] {
+            run.scene.hash = "aa".into();
+            (run.scene.moving_bounds, run.scene.shading) = ("union".into(), "lambert".into());
+            _ = run.device.details.insert("lacks".into(), "nothing".into());
+        }
         assert_eq!(differences(&a, &b), []);
         change(&mut b);
         let refusal = compare(&a, &b, PLAIN).unwrap_err().to_string();

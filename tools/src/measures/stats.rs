@@ -84,6 +84,21 @@ mod tests {
         assert_eq!(median(&[f64::INFINITY; 2]), Some(f64::INFINITY));
     }
 
+    /// Ranks lie between samples here, so that a nearest rank, or another percent, gives another value.
+    #[test]
+    fn each_percentile_has_its_own_rank() {
+        let hundred: Vec<f64> = (1..=100).map(f64::from).collect();
+        let near = |found: Option<f64>, expected: f64| {
+            assert!((found.unwrap() - expected).abs() < 1e-9, "{found:?}, expected {expected}");
+        };
+        near(p95(&hundred), 95.05);
+        near(median(&hundred), 50.5);
+        near(percentile(&hundred, 90.0), 90.1);
+        near(percentile(&hundred, 2.5), 3.475);
+        near(percentile(&[1.0, 2.0, 4.0, 8.0], 75.0), 5.0);
+        assert_eq!(percentile(&[1.0, 2.0], f64::NAN), None);
+    }
+
     proptest! {
         #[test]
         fn statistics_lie_between_the_extremes(samples in prop::collection::vec(-1e6..1e6f64, 1..40)) {

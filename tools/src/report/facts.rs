@@ -49,6 +49,9 @@ fn settings_hash(results: &Results) -> String {
         results.sightline_version,
         results.scene.name,
         results.scene.hash,
+        results.scene.moving_bounds,
+        results.scene.shading,
+        results.device.details.get("samples"),
         results.path,
         results.speed,
         results.seed,
@@ -71,9 +74,18 @@ mod tests {
         again.methods[0].frame_ms.median *= 2.0;
         again.device.name = "another".into();
         assert_eq!(settings_hash(&again), first);
-        let changes: [fn(&mut Results); 4] = [
+        let changes: [fn(&mut Results); 13] = [
             |results| results.seed += 1,
             |results| results.size[0] += 1,
+            |results| results.size.swap(0, 1),
+            |results| results.sightline_version.push('1'),
+            |results| results.scene.name.push('1'),
+            |results| results.path.push('1'),
+            |results| results.speed += 1.0,
+            |results| results.frames += 1,
+            |results| results.scene.moving_bounds.push('1'),
+            |results| results.scene.shading.push('1'),
+            |results| drop(results.device.details.insert("samples".into(), "4".into())),
             |results| results.scene.hash.push('1'),
             |results| drop(results.methods[1].options.insert("search.seeds".into(), 9.into())),
         ];

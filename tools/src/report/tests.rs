@@ -1,5 +1,7 @@
 //! A report is well formed, holds all that was run with every name escaped, and says what it cannot show.
 
+mod marks;
+
 use super::*;
 use crate::results::files::tests::Folder;
 use crate::results::tests::results;

@@ -59,6 +59,7 @@ impl Frames {
             ("node_visits", self.node_visits.len()),
             ("flare_by_query", self.flare_by_query.len()),
             ("flare_by_oracle", self.flare_by_oracle.len()),
+            ("staged_frame_ms", self.staged_frame_ms.len()),
         ];
         let plain = plain.map(|(name, length)| (name.to_owned(), length));
         let stages = self.stages.iter().map(|(name, ms)| (format!("stages.{name}"), ms.len()));
@@ -121,9 +122,10 @@ impl Method {
 impl Frames {
     /// Name and value of everything that is not a whole number.
     fn numbers(&self) -> impl Iterator<Item = (String, Option<f64>)> + '_ {
-        let plain = [("frame_ms", &self.frame_ms), ("ssim", &self.ssim), ("overdraw", &self.overdraw)];
+        let times = [("frame_ms", &self.frame_ms), ("staged_frame_ms", &self.staged_frame_ms)];
+        let plain = times.into_iter().chain([("ssim", &self.ssim), ("overdraw", &self.overdraw)]);
         let flares = [("flare_by_query", &self.flare_by_query), ("flare_by_oracle", &self.flare_by_oracle)];
-        let plain = plain.into_iter().chain(flares).flat_map(|(name, values)| {
+        let plain = plain.chain(flares).flat_map(|(name, values)| {
             let at = move |(frame, &value)| (format!("frames.{name}[{frame}]"), Some(value));
             values.iter().enumerate().map(at)
         });

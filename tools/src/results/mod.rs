@@ -96,6 +96,9 @@ pub struct Scene {
     /// per frame.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub moving_bounds: String,
+    /// How materials were drawn: `lambert` or `textured`; empty: not known (results of before it was written).
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub shading: String,
 }
 
 /// One method's row.

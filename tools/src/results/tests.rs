@@ -1,5 +1,8 @@
 //! The contract is kept both ways, broken files are named with their field, and the tables say what they should.
 
+pub(crate) mod fields;
+mod tables;
+
 use super::*;
 use crate::results::files::tests::Folder;
 use std::fs;

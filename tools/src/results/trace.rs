@@ -151,4 +151,37 @@ mod tests {
         let names: Vec<_> = names.map(|event| event["args"]["name"].as_str().unwrap()).collect();
         assert_eq!(names, ["none", "woc[search.seeds=8]", "ref"]);
     }
+
+    /// Frames with stage timers are other frames than those of the medians: the trace shows the former, of which the stages are parts.
+    #[test]
+    fn each_field_of_an_event_is_its_own() {
+        let mut results = results();
+        results.frames = 2;
+        (results.command, results.sightline_version) = ("a command".into(), "9.8.7".into());
+        results.methods.remove(0);
+        let frames = &mut results.methods[0].frames;
+        (frames.frame_ms, frames.staged_frame_ms) = (vec![70.0, 80.0], vec![13.0, 14.5]);
+        results.methods[1].frames.staged_frame_ms = vec![20.0, 21.0];
+        let found = trace(&results);
+        assert_eq!(found["displayTimeUnit"], "ms");
+        assert_eq!(found["otherData"], json!({ "command": "a command", "device": "llvmpipe", "version": "9.8.7" }));
+        let metadata = |name: &str, track: u32, args: Value| json!({ "ph": "M", "name": name, "pid": 1, "tid": track, "args": args });
+        let event = |name: &str, kind: &str, track: u32, [ts, dur]: [f64; 2], args: Value| json!({ "ph": "X", "name": name, "cat": kind, "pid": 1, "tid": track, "ts": ts, "dur": dur, "args": args });
+        let expected = [
+            metadata("process_name", 0, json!({ "name": "city on llvmpipe" })),
+            metadata("thread_name", 1, json!({ "name": "woc[search.seeds=8]" })),
+            metadata("thread_sort_index", 1, json!({ "sort_index": 1 })),
+            metadata("thread_name", 2, json!({ "name": "ref" })),
+            metadata("thread_sort_index", 2, json!({ "sort_index": 2 })),
+            event("frame 0", "frame", 1, [0.0, 13e3], json!({ "frame_ms": 13.0 })),
+            event("draw/all", "stage", 1, [0.0, 12e3], json!({ "ms": 12.0 })),
+            event("frame 0", "frame", 2, [0.0, 20e3], json!({ "frame_ms": 20.0 })),
+            // The next frame begins where the slowest of all tracks ends.
+            event("frame 1", "frame", 1, [20e3, 14.5e3], json!({ "frame_ms": 14.5 })),
+            event("warp/search", "stage", 1, [20e3, 500.0], json!({ "ms": 0.5 })),
+            event("draw/all", "stage", 1, [20.5e3, 11.5e3], json!({ "ms": 11.5 })),
+            event("frame 1", "frame", 2, [20e3, 21e3], json!({ "frame_ms": 21.0 })),
+        ];
+        assert_eq!(found["traceEvents"].as_array().unwrap(), &expected);
+    }
 }

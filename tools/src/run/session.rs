@@ -95,15 +95,13 @@ impl Session {
         if options.frames == 0 {
             bail!("a run needs at least one frame: give --frames a number above 0");
         }
-        let path = camera_path(&scene, options.path.as_deref(), options.speed)?;
-        let path = if options.whole_path { path.whole() } else { path };
-        let path = path.fitted(aspect(options.size), options.fit);
+        let path = path_of(&scene, &options)?;
         if path.widening() > 1.0 {
             let times = path.widening();
             tracing::info!("{}: its camera is made for wider pictures: the view is {times:.2} times as high, so that nothing is cropped (--fit height crops)", scene.name);
         }
         let targets = Targets::with_samples(gpu, options.size, options.samples)?;
-        let shading = options.shading.unwrap_or_else(|| Shading::of(&scene));
+        let shading = shading_of(&scene, &options);
         let world = World::with_bounds(gpu, &scene, shading, options.bounds)
             .with_context(|| format!("scene '{}'", scene.name))?;
         Ok(Session { gpu: gpu.clone(), scene, world, targets, path, options })
@@ -152,7 +150,7 @@ impl Session {
 
     /// SHA-256 of the scene as loaded, in hexadecimal.
     pub fn scene_hash(&self) -> String {
-        self.scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
+        hash_of(&self.scene)
     }
 
     /// How the bounds of what moves are had; none if nothing moves.
@@ -162,35 +160,57 @@ impl Session {
 
     /// What is drawn of materials.
     pub fn shading(&self) -> Shading {
-        self.options.shading.unwrap_or_else(|| Shading::of(&self.scene))
+        shading_of(&self.scene, &self.options)
     }
 
     /// Says in full what pictures of this run depend on: the key of its visible sets.
     pub fn key(&self) -> String {
-        let hash = self.scene_hash();
-        let [width, height] = self.options.size;
         let device = self.gpu.info().map(|info| info.cache_key.clone()).unwrap_or_default();
-        let drawing = drawing();
-        let samples = self.options.samples;
-        format!(
-            "scene={hash} path={} frames={} size={width}x{height}x{samples} device={device} draw={drawing} shading={:?}",
-            self.path.describe(),
-            self.options.frames,
-            self.shading()
-        )
+        picture_key(&self.scene, &self.path, &self.options, [&device, &self.gpu.depth().to_string()])
     }
+}
+
+/// The path of the camera through pictures of the session's size.
+fn path_of(scene: &Scene, options: &SessionOptions) -> Result<CameraPath> {
+    let path = camera_path(scene, options.path.as_deref(), options.speed)?;
+    let path = if options.whole_path { path.whole() } else { path };
+    Ok(path.fitted(aspect(options.size), options.fit))
+}
+
+fn shading_of(scene: &Scene, options: &SessionOptions) -> Shading {
+    options.shading.unwrap_or_else(|| Shading::of(scene))
+}
+
+/// SHA-256 of a scene as loaded, in hexadecimal.
+fn hash_of(scene: &Scene) -> String {
+    scene.content_hash().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The key of a session's pictures. A device with its driver and a depth format may decide otherwise who wins a pixel.
+fn picture_key(scene: &Scene, path: &CameraPath, options: &SessionOptions, [device, depth]: [&str; 2]) -> String {
+    let (hash, drawing) = (hash_of(scene), drawing());
+    let SessionOptions { size: [width, height], samples, frames, .. } = options;
+    format!(
+        "scene={hash} path={} frames={frames} size={width}x{height}x{samples} device={device} depth={depth} draw={drawing} shading={:?}",
+        path.describe(),
+        shading_of(scene, options)
+    )
 }
 
 /// Raised whenever the host decides otherwise what is drawn, so that visible sets of an earlier program are not taken for those of this one.
 /// 2: windings of the current transform, uniform alpha, morph targets.
 const DRAWING_VERSION: u32 = 2;
 
-/// Stands for all that decides pictures beside the scene: the shaders that draw or move objects, byte by byte, and the host's part.
+/// Returns true for the stages that decide who owns a pixel or is seen through: they draw or move objects, or read samples.
+fn decides_pictures(stage: &str) -> bool {
+    ["draw/", "world/", "translucent/", "engine/"].iter().any(|folder| stage.starts_with(folder))
+}
+
+/// Stands for all that decides pictures beside the scene: the shaders of [`decides_pictures`], byte by byte, and the host's part.
 fn drawing() -> String {
     let mut hash = Sha256::new();
     hash.update(DRAWING_VERSION.to_le_bytes());
-    let decides = |name: &str| name.starts_with("draw/") || name.starts_with("world/");
-    let modules = shaders::STAGES.iter().filter(|stage| decides(stage.name)).flat_map(|stage| stage.modules);
+    let modules = shaders::STAGES.iter().filter(|stage| decides_pictures(stage.name)).flat_map(|stage| stage.modules);
     modules.for_each(|module| hash.update(module.spirv));
     hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
@@ -219,3 +239,6 @@ pub fn cache_folder() -> Option<PathBuf> {
         .or_else(|| named("XDG_CACHE_HOME").map(|folder| folder.join("sightline")))
         .or_else(|| named("HOME").map(|folder| folder.join(".cache/sightline")))
 }
+
+#[cfg(test)]
+mod tests;

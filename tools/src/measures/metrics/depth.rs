@@ -103,6 +103,23 @@ mod tests {
     }
 
     #[test]
+    fn errors_that_disagree_keep_to_their_own_figures() {
+        let truth = [0.5f32, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.0];
+        // One texel is too near by much and two by little, one is too far, and two are holes.
+        let predicted = [0.75f32, 0.625, 0.625, 0.25, 0.0, 0.0, 0.5, 0.5, 0.5, 0.0];
+        let found = DepthErrors::of(&predicted, &truth, 5, f64::from).unwrap();
+        assert_eq!([found.nearer_percent, found.farther_percent, found.hole_percent], [30.0, 30.0, 20.0]);
+        let db = |sum: f64| -10.0 * (sum / 10.0).log10();
+        let expected = [0.09375 + 0.5625, 0.09375, 0.5625].map(db);
+        let [all, nearer, farther] = [found.psnr_db, found.nearer_psnr_db, found.farther_psnr_db].map(Option::unwrap);
+        for (found, expected) in [all, nearer, farther].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+        // The scale decides how much an error weighs: on this one nothing is left of it.
+        assert_eq!(DepthErrors::of(&predicted, &truth, 5, |_| 0.25).unwrap().psnr_db, None);
+    }
+
+    #[test]
     fn likeness_is_the_mean_of_blocks() {
         // Four blocks side by side, of which the second is spoilt: the others are alike.
         let (width, block) = (32, 8..16);

@@ -1,5 +1,7 @@
 //! The harness can fail: for each measure something is planted, and the measure must notice it (and the others not).
 
+mod fields;
+
 use super::*;
 use proptest::prelude::*;
 

@@ -4,7 +4,7 @@ use crate::results::Results;
 use crate::run::bench::{bench, header, BenchOptions};
 use crate::run::session::Session;
 use anyhow::{Context, Result};
-use culling::{Entry, Options};
+use culling::{Entry, Options, Shading};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -127,18 +127,27 @@ fn finished(
         }
     })?;
     stopped?;
-    let ideal = results.methods.iter().find(|method| method.method == "ref").map(|method| method.frame_ms.median);
-    for method in &mut results.methods {
+    set_ratios(&mut results);
+    Ok(results)
+}
+
+/// Measures the methods of a cell by its own `ref`, if that ran.
+fn set_ratios(cell: &mut Results) {
+    let ideal = cell.methods.iter().find(|method| method.method == "ref").map(|method| method.frame_ms.median);
+    for method in &mut cell.methods {
         method.ratio_to_ref = ideal.filter(|ideal| *ideal > 0.0).map(|ideal| method.frame_ms.median / ideal);
     }
-    Ok(results)
 }
 
 /// Everything on which a cell's numbers depend. Nothing that is measured at start, as that could differ the next time.
 fn key(session: &Session, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
-    let what = serde_json::to_string(&header(session, ""))?;
+    key_of(&header(session, ""), session.shading(), plan, cell)
+}
+
+/// The key of a cell of a run with this header.
+fn key_of(header: &Results, shading: Shading, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
+    let what = serde_json::to_string(header)?;
     let labels: Vec<String> = cell.iter().map(|(_, options)| options.label()).collect();
-    let shading = session.shading();
     let text = format!("{what}\n{}\n{}\n{}\n{shading:?}", labels.join("\n"), plan.warmup, plan.metrics);
     let digest = Sha256::digest(text.as_bytes());
     Ok(digest.iter().take(12).map(|byte| format!("{byte:02x}")).collect())
@@ -155,3 +164,6 @@ fn join(joined: &mut Option<Results>, cell: Results) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
