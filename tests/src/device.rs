@@ -1,5 +1,6 @@
 //! Devices for the tests of a process, with validation on, each used by one test at a time.
 
+use crate::replaced;
 use engine::{Gpu, GpuOptions};
 use std::ops::Deref;
 use std::sync::{Condvar, Mutex, MutexGuard};
@@ -63,7 +64,11 @@ fn lock() -> MutexGuard<'static, Devices> {
 
 fn opened() -> &'static Gpu {
     match Gpu::open(&options()) {
-        Ok(gpu) => Box::leak(Box::new(gpu)),
+        Ok(gpu) => {
+            let replaced = replaced::from_environment();
+            gpu.replace_shaders(&replaced).unwrap_or_else(|error| panic!("{}: {error}", replaced::SHADERS_VARIABLE));
+            Box::leak(Box::new(gpu))
+        }
         Err(error) => {
             panic!("tests need a Vulkan device with validation layers: {error} (tools/setup.sh installs lavapipe)")
         }

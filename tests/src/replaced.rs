@@ -3,6 +3,39 @@
 use shaders::reload::NewShader;
 use shaders::{ShaderKind, ShaderModule, STAGES};
 
+/// The environment variable that replaces shaders on every device of the tests: `hzb/test_bounds.comp=FILE.spv`, several joined by commas.
+/// The example `mutate_shaders` sets it.
+pub const SHADERS_VARIABLE: &str = "SIGHTLINE_TEST_SHADERS";
+
+/// Reads the shaders that [`SHADERS_VARIABLE`] names; none without it.
+///
+/// # Panics
+/// If an entry is not `STAGE.KIND=FILE`, or its file cannot be read.
+pub fn from_environment() -> Vec<NewShader> {
+    let named = std::env::var(SHADERS_VARIABLE).unwrap_or_default();
+    named.split(',').filter(|entry| !entry.is_empty()).map(read).collect()
+}
+
+fn read(entry: &str) -> NewShader {
+    let parts = entry.split_once('=').and_then(|(shader, path)| Some((shader.rsplit_once('.')?, path)));
+    let Some(((stage, kind), path)) = parts else {
+        panic!("{SHADERS_VARIABLE}: '{entry}' is not STAGE.KIND=FILE");
+    };
+    let kind = match kind {
+        "comp" => ShaderKind::Compute,
+        "vert" => ShaderKind::Vertex,
+        "frag" => ShaderKind::Fragment,
+        other => panic!("{SHADERS_VARIABLE}: '{other}' is not comp, vert or frag"),
+    };
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{SHADERS_VARIABLE}: {path}: {error}"));
+    NewShader { stage: stage.to_owned(), kind, words: words(&bytes) }
+}
+
+/// The words of SPIR-V, which is little-endian.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+}
+
 /// A shader as it was built in.
 ///
 /// # Panics
@@ -11,8 +44,7 @@ pub fn built_in(stage: &str, kind: ShaderKind) -> NewShader {
     let info = STAGES.iter().find(|info| info.name == stage).unwrap_or_else(|| panic!("no stage '{stage}'"));
     let is_it = |module: &&ShaderModule| module.kind == kind;
     let module = info.modules.iter().find(is_it).unwrap_or_else(|| panic!("no {kind:?} shader in '{stage}'"));
-    let words = module.spirv.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
-    NewShader { stage: stage.to_owned(), kind, words: words.collect() }
+    NewShader { stage: stage.to_owned(), kind, words: words(module.spirv) }
 }
 
 /// `example/count_covered` with its comparison turned round: it counts what is not covered.

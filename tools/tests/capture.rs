@@ -2,6 +2,9 @@
 //!
 //! Needs RenderDoc and its Python module (`tools/setup.sh --captures`, which `tools/test.sh` runs).
 
+mod display;
+
+use display::Display;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -141,22 +144,10 @@ fn a_shot_is_captured_beside_its_picture() {
 #[test]
 fn a_frame_of_the_window_is_captured() {
     let folder = folder("view");
-    let output = Command::new("xvfb-run")
-        .args([
-            "--auto-servernum",
-            "--server-args=-screen 0 640x360x24",
-            PROGRAM,
-            "view",
-            "--capture",
-            "0",
-            "--keys",
-            "2",
-        ])
-        .args(["--method", "frustum", "--out", "."])
-        .args(SCENE)
-        .current_dir(&folder)
-        .output()
-        .unwrap();
+    let display = Display::open("640x360");
+    let mut program = display.command(PROGRAM);
+    program.args(["view", "--capture", "0", "--keys", "2", "--method", "frustum", "--out", "."]).args(SCENE);
+    let output = program.current_dir(&folder).output().unwrap();
     assert!(output.status.success(), "{}", text(&output));
     let output = check(&folder, &["view_capture.rdc"]);
     assert!(output.status.success() && text(&output).contains("frustum/test_bounds"), "{}", text(&output));

@@ -1,7 +1,10 @@
 //! `sightline view` in a window of a virtual display, through the same handlers as real keys, with validation on.
 //!
-//! Needs xvfb-run and import (`tools/setup.sh --windows`, which `tools/test.sh` runs).
+//! Needs Xvfb and import (`tools/setup.sh --windows`, which `tools/test.sh` runs).
 
+mod display;
+
+use display::Display;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -34,15 +37,10 @@ impl Folder {
 
 /// Runs the program in a virtual display.
 fn view(folder: &Folder, arguments: &str, keys: &str) -> Output {
-    let output = Command::new("xvfb-run")
-        .args(["--auto-servernum", "--server-args=-screen 0 1280x800x24", PROGRAM, "view", "--validation", "--out"])
-        .arg(&folder.0)
-        .args(arguments.split(' '))
-        .args(["--keys", keys])
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("XDG_RUNTIME_DIR")
-        .output();
-    output.expect("xvfb-run starts (tools/setup.sh --windows installs it)")
+    let display = Display::open("1280x800");
+    let mut program = display.command(PROGRAM);
+    program.args(["view", "--validation", "--out"]).arg(&folder.0).args(arguments.split(' ')).args(["--keys", keys]);
+    program.output().expect("the program starts")
 }
 
 fn assert_good(output: &Output) {
@@ -141,11 +139,8 @@ fn what_the_screen_shows_is_what_a_screenshot_saves() {
          sleep 1; import -window root '{0}/screen.png'; kill $view",
         folder.0.display()
     );
-    let output = Command::new("xvfb-run")
-        .args(["--auto-servernum", "--server-args=-screen 0 640x360x24", "bash", "-c", &script])
-        .env_remove("WAYLAND_DISPLAY")
-        .output()
-        .expect("xvfb-run starts (tools/setup.sh --windows installs it)");
+    let display = Display::open("640x360");
+    let output = display.command("bash").args(["-c", &script]).output().expect("bash starts");
     assert_good(&output);
     let (saved, screen) = (folder.picture("saved.png"), folder.picture("screen.png"));
     assert_eq!(saved.dimensions(), screen.dimensions());
@@ -221,21 +216,12 @@ sys.exit(program.wait())
 #[test]
 fn a_window_out_of_sight_rests_and_one_that_is_destroyed_ends_the_program_in_one_line() {
     let folder = Folder::new("out-of-sight");
-    let output = Command::new("xvfb-run")
-        .args([
-            "--auto-servernum",
-            "--server-args=-screen 0 640x360x24",
-            "/usr/bin/python3",
-            "-c",
-            WINDOW_SYSTEM,
-            PROGRAM,
-        ])
-        .args("view --validation --scene city-block --scale 0.02 --size 320x180 --method hzb --out".split(' '))
-        .arg(&folder.0)
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("XDG_RUNTIME_DIR")
-        .output()
-        .expect("xvfb-run starts (tools/setup.sh --windows installs it)");
+    let display = Display::open("640x360");
+    let mut window_system = display.command("/usr/bin/python3");
+    window_system.args(["-c", WINDOW_SYSTEM, PROGRAM]);
+    window_system
+        .args("view --validation --scene city-block --scale 0.02 --size 320x180 --method hzb --out".split(' '));
+    let output = window_system.arg(&folder.0).output().expect("Python starts");
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(1), "{out}\n{err}");
     assert!(err.lines().count() == 1 && err.contains("the window system took the window away"), "{err}");

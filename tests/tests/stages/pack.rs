@@ -16,6 +16,21 @@ fn flags(random: &mut Random, count: usize, share: f64) -> Vec<u32> {
     (0..count).map(|_| if random.unit() < share { 1 + random.below(3) as u32 * 0x7fff_ffff } else { 0 }).collect()
 }
 
+/// The value of words that no stage has written. Buffers end with one such word more, which no stage may read or write.
+const UNTOUCHED: u32 = 0xdead_beef;
+
+/// A buffer of `len` words and the word behind them.
+fn guarded(gpu: &Gpu, len: usize) -> Buffer<u32> {
+    Buffer::with_data(gpu, "test.words", &vec![UNTOUCHED; len + 1], STORAGE).unwrap()
+}
+
+/// Reads the words before the last one, which must be untouched.
+fn read_guarded(buffer: &Buffer<u32>) -> Vec<u32> {
+    let mut words = buffer.read().unwrap();
+    assert_eq!(words.pop(), Some(UNTOUCHED), "written behind the end");
+    words
+}
+
 /// Counts, starts, total and commands as the stages make them, over the objects from `first` on.
 fn run(
     gpu: &Gpu,
@@ -26,10 +41,11 @@ fn run(
 ) -> (Vec<u32>, Vec<u32>, u32, Vec<DrawCommand>) {
     let count = flags.len() - first;
     let chunk_count = count.div_ceil(PACK_CHUNK as usize);
-    let marked = |len: usize| Buffer::with_data(gpu, "test.words", &vec![0xdead_beefu32; len], STORAGE).unwrap();
-    let (counts, starts, total) = (marked(chunk_count), marked(chunk_count), marked(1));
-    let flags = Buffer::with_data(gpu, "test.flags", flags, STORAGE).unwrap();
-    let object_meshes = Buffer::with_data(gpu, "test.object_meshes", object_meshes, STORAGE).unwrap();
+    let (counts, starts, total) = (guarded(gpu, chunk_count), guarded(gpu, chunk_count), guarded(gpu, 1));
+    // An object behind the last one is flagged too, and has a mesh.
+    let flags = Buffer::with_data(gpu, "test.flags", &[flags, &[UNTOUCHED]].concat(), STORAGE).unwrap();
+    let object_meshes = [object_meshes, &[0]].concat();
+    let object_meshes = Buffer::with_data(gpu, "test.object_meshes", &object_meshes, STORAGE).unwrap();
     let meshes = Buffer::with_data(gpu, "test.meshes", meshes, STORAGE).unwrap();
     let commands = Buffer::<DrawCommand>::new(gpu, "test.commands", flags.len(), STORAGE).unwrap();
     let (first_object, object_count) = (first as u32, count as u32);
@@ -56,7 +72,7 @@ fn run(
     };
     f.dispatch(write, chunk_count as u32);
     f.finish().unwrap();
-    (counts.read().unwrap(), starts.read().unwrap(), total.read().unwrap()[0], commands.read().unwrap())
+    (read_guarded(&counts), read_guarded(&starts), read_guarded(&total)[0], commands.read().unwrap())
 }
 
 #[test]
@@ -89,6 +105,33 @@ fn packing_equals_its_twins_at_any_number_of_objects() {
                 "{count} objects: written outside the list"
             );
         }
+    }
+}
+
+/// Each list has its own work-group. At these numbers of chunks some lanes stand behind the end of their list, in the next one.
+#[test]
+fn several_lists_are_scanned_apart() {
+    let gpu = gpu();
+    let mut random = Random::new(52);
+    for chunk_count in [1, 5, 8, 37] {
+        let lists: Vec<Vec<u32>> =
+            (0..3).map(|_| (0..chunk_count).map(|_| 1 + random.below(64) as u32).collect()).collect();
+        let counts = Buffer::with_data(&gpu, "test.counts", &lists.concat(), STORAGE).unwrap();
+        let (starts, total) = (guarded(&gpu, 3 * chunk_count), guarded(&gpu, 3));
+        let scan = ScanCounts {
+            counts: counts.all(),
+            starts: starts.all(),
+            total: total.all(),
+            chunk_count: chunk_count as u32,
+            constants: ScanCountsConstants { subgroup_size: gpu.subgroup_size() },
+        };
+        let mut f = gpu.frame();
+        f.dispatch_groups(scan, 3);
+        f.finish().unwrap();
+        let (expected_starts, expected_totals): (Vec<_>, Vec<_>) =
+            lists.iter().map(|counts| twin::scan_counts(counts)).unzip();
+        assert_eq!(read_guarded(&starts), expected_starts.concat(), "{chunk_count} chunks");
+        assert_eq!(read_guarded(&total), expected_totals, "{chunk_count} chunks");
     }
 }
 

@@ -5,6 +5,8 @@ mod folder;
 mod measure;
 mod pairs;
 mod stages;
+#[cfg(test)]
+mod tests;
 
 use crate::measures::metrics::{FrameImages, MethodErrors};
 use crate::measures::stats;
@@ -221,14 +223,23 @@ impl Records {
 }
 
 fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results::Method {
-    let frame_ms: Vec<f64> = records.timed.iter().map(|report| report.frame_ms).collect();
-    let host_ms: Vec<f64> = records.timed.iter().map(|report| report.host_ms).collect();
     let options = contender.options.all().into_iter().map(|(name, value)| (name, value.into())).collect();
-    let mut method = results::Method {
+    results::Method {
         label: contender.label(),
         method: contender.entry.id.to_owned(),
         options,
         guarantee: contender.guarantee().to_string(),
+        device_memory_mib: shared_mib + contender.memory_mib,
+        choices: contender.method.choices(),
+        ..recorded(records)
+    }
+}
+
+/// The figures that come from the recorded frames. The name, options and memory of the method stay empty.
+fn recorded(records: &Records) -> results::Method {
+    let frame_ms: Vec<f64> = records.timed.iter().map(|report| report.frame_ms).collect();
+    let host_ms: Vec<f64> = records.timed.iter().map(|report| report.host_ms).collect();
+    let mut method = results::Method {
         frame_ms: FrameMs::from_samples(&frame_ms).unwrap_or_default(),
         host_ms: stats::median(&host_ms),
         stages: stages(&records.staged, &records.warm),
@@ -245,8 +256,6 @@ fn method(contender: &Contender, records: &Records, shared_mib: f64) -> results:
         bounds_brought_mean: mean(&records.bounds_brought),
         refits_mean: mean(&records.counted(|work| work.refits)),
         node_visits_mean: mean(&records.counted(|work| work.node_visits)),
-        device_memory_mib: shared_mib + contender.memory_mib,
-        choices: contender.method.choices(),
         frames: frames(frame_ms, records),
         ..results::Method::default()
     };
