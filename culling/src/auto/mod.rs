@@ -55,6 +55,15 @@ const CHECKED: (&str, Memory) = ("woc", Memory::Needs);
 /// Shares of the picture that are new from which on a frame is hurried, or a cut.
 const PACES: [f64; 2] = [0.12, 0.6];
 
+/// The pace of a frame that shows this share of its picture anew.
+fn pace_of(new_share: f64) -> Pace {
+    match PACES.iter().filter(|share| new_share > **share).count() {
+        0 => Pace::Calm,
+        1 => Pace::Hurried,
+        _ => Pace::Cut,
+    }
+}
+
 /// Choices that are kept.
 const MOST_LOGGED: usize = 1 << 16;
 
@@ -126,13 +135,7 @@ pub fn make(setup: &Setup<'_>) -> Result<Box<dyn Method>> {
 impl Auto {
     /// What the next frame uses. Changes nothing.
     fn look_ahead(&self, view: &View) -> Choice {
-        let new = self.hurry.new_share(view);
-        let pace = match PACES.iter().filter(|share| new > **share).count() {
-            0 => Pace::Calm,
-            1 => Pace::Hurried,
-            _ => Pace::Cut,
-        };
-        let choice = self.chooser.look_ahead(pace);
+        let choice = self.chooser.look_ahead(pace_of(self.hurry.new_share(view)));
         if self.turns {
             let count = self.candidates.len() + usize::from(self.checked.is_some());
             return Choice { candidate: self.frames % count, ..choice };
@@ -247,5 +250,27 @@ impl Method for Auto {
             checked.trust.forget();
         }
         self.each().try_for_each(|candidate| candidate.forget())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_hurried_from_an_eighth_on_and_a_cut_where_most_is_new() {
+        let paces = [0.0, 0.119, 0.121, 0.3, 0.599, 0.601, 1.0].map(pace_of);
+        let expected = [Pace::Calm, Pace::Calm, Pace::Hurried, Pace::Hurried, Pace::Hurried, Pace::Cut, Pace::Cut];
+        assert_eq!(paces, expected);
+    }
+
+    /// At a cut `eovc` takes many times as long as others, and `frustum` takes as long in any frame.
+    #[test]
+    fn candidates_remember_as_their_methods_do() {
+        let of = |id: &str| CANDIDATES.iter().find(|candidate| candidate.0 == id).map(|candidate| candidate.1);
+        assert_eq!(CANDIDATES[0].0, "hzb-iterative", "used until anything is measured");
+        assert_eq!([of("eovc"), of("frustum")], [Some(Memory::Needs), Some(Memory::None)]);
+        assert_eq!([of("hzb-iterative"), of("roc-iterative")], [Some(Memory::Helps); 2]);
+        assert_eq!(CHECKED, ("woc", Memory::Needs));
     }
 }

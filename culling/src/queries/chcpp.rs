@@ -210,8 +210,7 @@ impl Walk {
     fn shows(&mut self, nodes: &[u32], frame: &mut Recording<'_>) -> Result<()> {
         if let [node] = *nodes {
             self.nodes.pull_up(node);
-            self.nodes.state_mut(node).test =
-                self.nodes.frame + 1 + chance(node, self.nodes.frame) % self.assumed_frames;
+            self.nodes.state_mut(node).test = first_test(node, self.nodes.frame, self.assumed_frames);
             return self.nodes.open(node, frame);
         }
         for node in nodes {
@@ -226,6 +225,12 @@ impl Walk {
         let boxes: Vec<u32> = nodes.iter().flat_map(tight).flat_map(|node| self.nodes.asked(node)).collect();
         frame.ask(boxes.into_iter())
     }
+}
+
+/// The frame of the first test of a leaf that a frame found visible: one of the next `assumed_frames`, by chance, so that leaves that come
+/// into view together are not tested together.
+fn first_test(node: u32, frame: u64, assumed_frames: u64) -> u64 {
+    frame + 1 + chance(node, frame) % assumed_frames
 }
 
 /// A number by chance, always the same for a node and frame (SplitMix64).
@@ -271,6 +276,25 @@ mod tests {
     fn boxes_apart() -> Bvh {
         let cube = |x: f64| Aabb { min: DVec3::new(x, 0.0, 0.0), max: DVec3::new(x + 1.0, 1.0, 1.0) };
         Bvh::build(&(0..32).map(|index| cube(100.0 * f64::from(index))).collect::<Vec<_>>(), Split::Sah).unwrap()
+    }
+
+    #[test]
+    fn leaves_that_are_shown_together_fall_due_apart() {
+        for (frame, assumed) in [(1, 10), (7, 10), (7, 4), (1_000_000, 10)] {
+            let mut due = vec![0; assumed as usize];
+            for node in 0..1_000 {
+                due[(first_test(node, frame, assumed) - frame - 1) as usize] += 1;
+            }
+            // A fair share of 1,000 leaves, give or take four standard deviations of a binomial distribution.
+            let (share, chance) = (1e3 / assumed as f64, 1.0 / assumed as f64);
+            let spread = 4.0 * (share * (1.0 - chance)).sqrt();
+            assert!(due.iter().all(|due| (f64::from(*due) - share).abs() < spread), "frame {frame}: {due:?}");
+        }
+        assert_eq!(first_test(3, 7, 1), 8, "of one frame there is no choice");
+        assert_eq!(first_test(3, 7, 10), first_test(3, 7, 10));
+        let in_a_row: std::collections::BTreeSet<u64> =
+            (0..100).map(|frame| first_test(3, frame, 10) - frame).collect();
+        assert_eq!(in_a_row.len(), 10, "the same leaf is not always tested as soon after it shows");
     }
 
     #[test]

@@ -88,23 +88,49 @@ fn name_of(gpu: &Gpu) -> String {
 /// and of a triangle.
 fn fit(gpu: &Gpu) -> Result<Costs> {
     let mut bench = Bench::new(gpu)?;
-    let idle = bench.median(Kind::Nothing)?;
-    let each = |ms: f64| (ms - idle).max(0.0) / f64::from(REPEATS);
-    let [small, large] = [each(bench.median(Kind::Queries(SMALL))?), each(bench.median(Kind::Queries(LARGE))?)];
-    let [split, together] = [each(bench.median(Kind::Commands)?), each(bench.median(Kind::Instances)?)];
-    let pixel = ((large - small) / (bench.pixels(LARGE) - bench.pixels(SMALL))).max(0.0);
-    Ok(Costs {
-        query: (small - pixel * bench.pixels(SMALL)).max(0.0),
+    Ok(fitted(&Medians {
+        idle: bench.median(Kind::Nothing)?,
+        small: bench.median(Kind::Queries(SMALL))?,
+        large: bench.median(Kind::Queries(LARGE))?,
+        split: bench.median(Kind::Commands)?,
+        together: bench.median(Kind::Instances)?,
+    }))
+}
+
+/// Median times of the measurement's frames, in milliseconds.
+struct Medians {
+    /// Of a frame that only clears.
+    idle: f64,
+    /// Of queries of the small box, and of the large one.
+    small: f64,
+    large: f64,
+    /// Of small boxes with a command each, and of as many by one command.
+    split: f64,
+    together: f64,
+}
+
+fn fitted(medians: &Medians) -> Costs {
+    let each = |ms: f64| (ms - medians.idle).max(0.0) / f64::from(REPEATS);
+    let [small, large] = [each(medians.small), each(medians.large)];
+    let [split, together] = [each(medians.split), each(medians.together)];
+    let pixel = ((large - small) / (pixels(LARGE) - pixels(SMALL))).max(0.0);
+    Costs {
+        query: (small - pixel * pixels(SMALL)).max(0.0),
         pixel,
         command: (split - together).max(0.0),
         triangle: together / BOX_TRIANGLES,
-    })
+    }
 }
 
 /// The boxes of the measurement, by number, and what part of the picture's side they take.
 const SMALL: u32 = 0;
 const LARGE: u32 = 1;
 const SIDES: [f64; 2] = [1.0 / 64.0, 0.75];
+
+/// Pixels that a box of the measurement covers.
+fn pixels(size: u32) -> f64 {
+    (SIDES[size as usize] * f64::from(SIDE_PX)).powi(2)
+}
 
 #[derive(Clone, Copy)]
 enum Kind {
@@ -158,10 +184,6 @@ impl Bench {
         })
     }
 
-    fn pixels(&self, size: u32) -> f64 {
-        (SIDES[size as usize] * f64::from(SIDE_PX)).powi(2)
-    }
-
     fn median(&mut self, kind: Kind) -> Result<f64> {
         let mut times = (0..=TAKES).map(|_| self.take(kind)).collect::<Result<Vec<f64>>>()?;
         // The first one may have had to make pipelines.
@@ -195,5 +217,65 @@ impl Bench {
             Kind::Commands | Kind::Instances => f.test_boxes(stage, draw, &self.target.test_only()),
         }
         Ok(f.finish()?.frame_ms)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Medians of 256 repeats on a device of these costs. The small box covers 4 x 4 pixels, the large one 192 x 192.
+    fn medians(costs: Costs) -> Medians {
+        let idle = 0.5;
+        let repeated = |ms: f64| idle + 256.0 * ms;
+        let Costs { query, pixel, command, triangle } = costs;
+        Medians {
+            idle,
+            small: repeated(query + 16.0 * pixel),
+            large: repeated(query + 36_864.0 * pixel),
+            split: repeated(command + 6.0 * triangle),
+            together: repeated(6.0 * triangle),
+        }
+    }
+
+    /// Sums and quotients of numbers below 1,000 are rounded by less than 1e-13 each; the fit makes fewer than ten of them.
+    fn assert_near(one: Costs, other: Costs) {
+        let all = |costs: Costs| [costs.query, costs.pixel, costs.command, costs.triangle];
+        let far = all(one).iter().zip(all(other)).any(|(one, other)| (one - other).abs() > 1e-12);
+        assert!(!far, "{one:?} is not {other:?}");
+    }
+
+    #[test]
+    fn a_fit_of_given_medians_gives_the_costs_that_they_were_made_of() {
+        let costs = Costs { query: 0.003, pixel: 2e-6, command: 0.001, triangle: 0.000_5 };
+        assert_near(fitted(&medians(costs)), costs);
+        let costs = Costs { query: 0.000_2, pixel: 7e-6, command: 0.03, triangle: 0.02 };
+        assert_near(fitted(&medians(costs)), costs);
+    }
+
+    #[test]
+    fn a_fit_of_noise_has_no_cost_below_zero() {
+        let costs = Costs { query: 0.003, pixel: 2e-6, command: 0.001, triangle: 0.000_5 };
+        let faster_than_idle = Medians { small: 0.1, large: 0.2, split: 0.3, together: 0.4, ..medians(costs) };
+        let nothing = Costs { query: 0.0, pixel: 0.0, command: 0.0, triangle: 0.0 };
+        assert_near(fitted(&faster_than_idle), nothing);
+        let Medians { small, large, split, together, .. } = medians(costs);
+        let turned = Medians { small: large, large: small, split: together, together: split, idle: 0.5 };
+        let all_in_the_query = Costs { query: 0.003 + 36_864.0 * 2e-6, pixel: 0.0, command: 0.0, ..costs };
+        assert_near(fitted(&turned), Costs { triangle: 0.000_5 + 0.001 / 6.0, ..all_in_the_query });
+    }
+
+    #[test]
+    fn costs_add_up() {
+        let costs = Costs { query: 2.0, pixel: 3.0, command: 5.0, triangle: 7.0 };
+        assert_eq!(costs.query_ms(11.0), 35.0);
+        assert_eq!(costs.draw_ms(11.0, 13.0), 146.0);
+    }
+
+    #[test]
+    fn costs_are_printed_in_microseconds_and_pixels_in_nanoseconds() {
+        let costs = Costs { query: 0.001_5, pixel: 2e-6, command: 0.000_25, triangle: 0.000_125 };
+        let printed = "a query 1.50 us and 2.000 ns a pixel, a draw command 0.25 us and 0.125 us a triangle";
+        assert_eq!(costs.to_string(), printed);
     }
 }

@@ -28,6 +28,30 @@ pub(super) struct State {
     pub(super) whole: bool,
 }
 
+impl State {
+    /// The frame before found the node visible.
+    fn was_visible(&self, frame: u64) -> bool {
+        self.visible && self.visited + 1 == frame
+    }
+
+    /// Frames in a row for which the node has been hidden; 0 if that is not known.
+    fn hidden_for(&self, frame: u64) -> u64 {
+        if self.visited == 0 || self.visible {
+            return 0;
+        }
+        frame - self.hidden_since
+    }
+
+    /// Notes that a frame looks at the node and has seen nothing of it yet.
+    fn visit(&mut self, frame: u64) {
+        if self.visited == 0 || self.visible {
+            self.hidden_since = frame;
+        }
+        self.visible = false;
+        self.visited = frame;
+    }
+}
+
 /// The square of the least distance of a box to a point.
 pub(super) fn distance(bounds: &Aabb, eye: DVec3) -> f64 {
     (bounds.min - eye).max(eye - bounds.max).max(DVec3::ZERO).length_squared()
@@ -104,17 +128,12 @@ impl Hierarchy {
 
     /// The last frame looked at the node and found it visible.
     pub(super) fn was_visible(&self, node: u32) -> bool {
-        let state = self.state(node);
-        state.visible && state.visited + 1 == self.frame
+        self.state(node).was_visible(self.frame)
     }
 
     /// Frames in a row for which the node has been hidden; 0 if that is not known.
     pub(super) fn hidden_for(&self, node: u32) -> u64 {
-        let state = self.state(node);
-        if state.visited == 0 || state.visible {
-            return 0;
-        }
-        self.frame - state.hidden_since
+        self.state(node).hidden_for(self.frame)
     }
 
     pub(super) fn place(&self, node: u32) -> Place {
@@ -176,12 +195,7 @@ impl Hierarchy {
     /// Notes that the node was looked at and nothing of it has been seen yet.
     pub(super) fn visit(&mut self, node: u32) {
         let frame = self.frame;
-        let state = self.state_mut(node);
-        if state.visited == 0 || state.visible {
-            state.hidden_since = frame;
-        }
-        state.visible = false;
-        state.visited = frame;
+        self.state_mut(node).visit(frame);
     }
 
     /// A visible node makes those above it visible: the hierarchy is opened as far in the next frame.
@@ -222,5 +236,41 @@ impl Hierarchy {
             }
         }
         shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distance_to_a_box_is_squared_and_zero_inside() {
+        let bounds = Aabb { min: DVec3::new(1.0, -2.0, 3.0), max: DVec3::new(2.0, 2.0, 5.0) };
+        assert_eq!(distance(&bounds, DVec3::new(1.5, 0.0, 4.0)), 0.0);
+        assert_eq!(distance(&bounds, DVec3::new(-1.0, 0.0, 4.0)), 4.0);
+        assert_eq!(distance(&bounds, DVec3::new(5.0, 6.0, 17.0)), 9.0 + 16.0 + 144.0);
+    }
+
+    #[test]
+    fn only_the_frame_before_tells_of_a_visible_node() {
+        let state = State { visible: true, visited: 7, ..State::default() };
+        assert!(state.was_visible(8));
+        assert!(!state.was_visible(9), "it was out of view in frame 8");
+        assert!(!State { visible: false, ..state }.was_visible(8));
+    }
+
+    #[test]
+    fn a_node_is_hidden_from_the_frame_on_that_first_finds_it_so() {
+        let mut state = State::default();
+        assert_eq!(state.hidden_for(5), 0, "it was never looked at");
+        let hidden = [5, 6, 9].map(|frame| {
+            state.visit(frame);
+            state.hidden_for(frame)
+        });
+        assert_eq!(hidden, [0, 1, 4]);
+        state.visible = true;
+        assert_eq!(state.hidden_for(10), 0);
+        state.visit(12);
+        assert_eq!((state.hidden_for(12), state.hidden_for(14)), (0, 2), "counted anew after it showed");
     }
 }

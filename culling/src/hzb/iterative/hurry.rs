@@ -90,3 +90,109 @@ fn new_share(last: &View, view: &View, extent: f64) -> f64 {
     let uncovered = if moved == 0.0 { 0.0 } else { 10.0 * moved / extent.max(f64::MIN_POSITIVE) };
     (turned + uncovered).min(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+    use scenes::{Pose, Projection, Shot};
+
+    const PROJECTION: Projection = Projection::Perspective { fov_y: 1.0, near: 0.1, far: Some(200.0) };
+
+    fn view(position: DVec3, rotation: DQuat, projection: Projection, size: [u32; 2]) -> View {
+        View::new(&Shot { pose: Pose { position, rotation }, projection, seconds: 0.0 }, size, 0, 0.0)
+    }
+
+    fn at(x: f64) -> View {
+        view(DVec3::new(x, 0.0, 0.0), DQuat::IDENTITY, PROJECTION, [160, 90])
+    }
+
+    fn turned(angle: f64, axis: DVec3) -> View {
+        view(DVec3::ZERO, DQuat::from_axis_angle(axis, angle), PROJECTION, [160, 90])
+    }
+
+    fn after_origin() -> Hurry {
+        let mut hurry = Hurry::within(None, 200.0);
+        hurry.look(&at(0.0));
+        hurry
+    }
+
+    #[test]
+    fn a_zoom_or_another_size_is_a_cut() {
+        let hurry = after_origin();
+        assert_eq!(hurry.new_share(&at(0.0)), 0.0);
+        let zooms = [
+            Projection::Perspective { fov_y: 0.99, near: 0.1, far: Some(200.0) },
+            Projection::Perspective { fov_y: 1.0, near: 0.2, far: Some(200.0) },
+            Projection::Orthographic { half_height: 5.0, near: 0.1, far: 200.0 },
+        ];
+        for projection in zooms {
+            let zoomed = view(DVec3::ZERO, DQuat::IDENTITY, projection, [160, 90]);
+            assert!(hurry.is_cut(&zoomed), "{projection:?}");
+            assert_eq!(hurry.new_share(&zoomed), 1.0, "{projection:?}");
+        }
+        let [narrow, low] = [[159, 90], [160, 89]].map(|size| view(DVec3::ZERO, DQuat::IDENTITY, PROJECTION, size));
+        assert!(hurry.is_cut(&narrow) && hurry.is_cut(&low));
+    }
+
+    #[test]
+    fn a_move_by_a_hundredth_of_the_extent_shows_a_tenth_of_the_picture_anew() {
+        let hurry = after_origin();
+        // Each of these is a product and a quotient, rounded to 2^-53.
+        let is = |view: &View, share: f64| (hurry.new_share(view) - share).abs() < 1e-15;
+        assert!(is(&at(2.0), 0.1) && is(&at(-6.0), 0.3) && is(&at(20.0), 1.0) && is(&at(500.0), 1.0));
+        assert!(hurry.is_cut(&at(19.9)) && !hurry.is_cut(&at(19.7)));
+    }
+
+    #[test]
+    fn a_turn_counts_by_the_axis_that_it_moves_most() {
+        let hurry = after_origin();
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            // The chord of the angle, whatever the axis; sines and cosines of the quaternion are good to a few 2^-53.
+            let chord = 2.0 * (0.5 * 0.2_f64).sin();
+            assert!((hurry.new_share(&turned(0.2, axis)) - chord).abs() < 1e-14, "{axis}");
+        }
+        let both = view(DVec3::new(2.0, 0.0, 0.0), DQuat::from_axis_angle(DVec3::Y, 0.2), PROJECTION, [160, 90]);
+        assert!((hurry.new_share(&both) - 0.1 - 2.0 * 0.1_f64.sin()).abs() < 1e-14, "a turn and a move add up");
+        assert_eq!(hurry.new_share(&turned(2.0, DVec3::Y)), 1.0);
+    }
+
+    #[test]
+    fn the_more_is_new_the_more_ranges_there_are() {
+        let ranges = |x: f64| after_origin().ranges(&at(x));
+        assert_eq!([0.0, 1.9, 2.1, 5.9, 6.1, 19.7, 19.9, 100.0].map(ranges), [1, 1, 2, 2, 3, 3, 4, 4]);
+        let [at_a_step, behind] = [0.1, 0.100_1].map(ranges_for);
+        assert_eq!((at_a_step, behind), (1, 2), "a share is exceeded, not reached");
+    }
+
+    #[test]
+    fn each_frame_is_compared_with_the_one_before() {
+        let mut hurry = Hurry::within(None, 200.0);
+        let ranges: Vec<u32> = [0.0, 3.0, 6.0, 6.0, 12.5].map(|x| hurry.ranges(&at(x))).into();
+        assert_eq!(ranges, [4, 2, 2, 1, 3], "of a first frame all is new");
+        hurry.forget();
+        assert_eq!(hurry.ranges(&at(12.5)), 4, "after a reset too");
+    }
+
+    #[test]
+    fn a_fixed_number_of_ranges_stays_whatever_the_view_does() {
+        let fixed = |ranges: u32| {
+            let mut hurry = Hurry::within(Some(ranges), 200.0);
+            let chosen = [0.0, 0.0, 100.0].map(|x| hurry.ranges(&at(x)));
+            assert_eq!(chosen, [chosen[0]; 3]);
+            assert_eq!(hurry.fixed(), Some(chosen[0]));
+            assert!(hurry.is_cut(&at(0.0)), "the view is followed all the same");
+            chosen[0]
+        };
+        assert_eq!([0, 1, 3, 5, 9].map(fixed), [1, 1, 3, 5, MOST_STEP_RANGES]);
+        assert_eq!(Hurry::within(None, 200.0).fixed(), None);
+    }
+
+    #[test]
+    fn without_an_extent_any_move_is_a_cut_and_none_is_not() {
+        let mut hurry = Hurry::within(None, 0.0);
+        hurry.look(&at(0.0));
+        assert_eq!(hurry.new_share(&at(0.0)), 0.0);
+        assert!(hurry.is_cut(&at(1e-6)));
+    }
+}
