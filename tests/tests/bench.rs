@@ -9,8 +9,8 @@ use engine::{Buffer, Frame, Gpu, Placement, Target};
 use harness::{gpu, sessions};
 use shaders::types::DrawCommand;
 use sightline::results::Results;
-use sightline::run::bench::{bench, BenchOptions};
-use sightline::run::session::Session;
+use sightline::run::bench::{bench, header, BenchOptions};
+use sightline::run::session::{Session, SessionOptions};
 use sightline::run::truth::RunTruth;
 use std::cell::RefCell;
 use Call::{Counted, Forget, Measured, Ran, Repeat};
@@ -199,4 +199,36 @@ fn a_method_that_draws_the_frame_before_is_wrong_in_every_frame() {
     let [late, none] = &results.methods[..] else { panic!("{} methods", results.methods.len()) };
     assert!(late.frames.differing_pixels.iter().all(|pixels| *pixels > 1000), "{:?}", late.frames.differing_pixels);
     assert_eq!(none.frames.differing_pixels, [0; FRAMES]);
+}
+
+/// Each number of the session differs from the others.
+#[test]
+fn the_header_holds_what_was_run() {
+    let gpu = gpu();
+    let options = SessionOptions {
+        scene: "moving-boxes".into(),
+        scale: 0.5,
+        path: Some("pan".into()),
+        speed: 3.0,
+        seed: 7,
+        frames: 5,
+        size: [96, 54],
+        ..SessionOptions::default()
+    };
+    let session = Session::on(&gpu, options).unwrap();
+    let header = header(&session, "typed");
+    assert_eq!((header.size, header.frames, header.speed, header.seed), ([96, 54], 5, 3.0, 7));
+    assert_eq!((header.command.as_str(), header.path), ("typed", session.path().describe()));
+    assert_eq!((header.scene.name.as_str(), header.scene.shading.as_str()), ("moving-boxes", "lambert"));
+    assert_eq!((header.scene.hash, header.scene.moving_bounds.as_str()), (session.scene_hash(), "per-frame"));
+    let (objects, triangles) = (header.scene.objects, header.scene.triangles);
+    assert_eq!((objects, triangles), (session.world.total() as u64, session.world.triangles()));
+    assert!(objects > 0 && triangles > objects, "the numbers must differ: {objects}, {triangles}");
+    let info = gpu.info().unwrap();
+    assert_eq!((&header.device.name, &header.device.driver), (&info.name, &info.driver));
+    assert_eq!(
+        (header.device.api_version, header.device.depth_format),
+        (info.api.clone(), "D32_SFLOAT (reversed)".to_owned())
+    );
+    assert!(header.methods.is_empty());
 }

@@ -92,8 +92,7 @@ fn every_option_of_every_method_has_a_row_or_a_reason() {
 fn the_work_of_every_method_is_as_recorded() {
     let gpu = gpu();
     let mut counter = Counter::new(&gpu);
-    let mut text =
-        String::from("Work of each method with its defaults, summed over 8 frames (tests/tests/work.rs).\n");
+    let mut text = String::from("Work of each method with its defaults, summed over 8 frames (tests/tests/work.rs).\n");
     let all = entries().map(|entry| (entry, table::recorded_run(entry.id)));
     let moving = METHODS.iter().map(|entry| (entry, table::MOVING));
     // `nohc` asks where its measured times say that it pays.
