@@ -36,7 +36,7 @@ run() {
 export -f run
 
 # Files that take long begin before the others, so that none is left to run alone at the end: nothing but time hangs on this.
-readonly LONG='^tests/(stress|method|boxes|view)'
+readonly LONG='^(tests/(stress|method|several|depth_formats|boxes|view|skins|work)|scenes/)'
 {
     [[ $# -eq 0 ]] || printf '%s\n' "$@"
     grep -E "$LONG" <<<"$tests"

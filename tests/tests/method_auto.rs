@@ -53,41 +53,39 @@ fn a_repeated_run_draws_what_the_timed_one_drew() {
 
 const CALM: (&str, f64, &str) = ("city-block", 0.05, "walk");
 
-/// What was chosen in each frame, and what was drawn, when `woc` is said to take a quarter of what others take.
-fn film_where_woc_is_cheap(
-    (scene, scale, path): (&str, f64, &str),
-    speed: f64,
-    allow: &str,
-) -> (Vec<String>, Vec<Drawn>, RunTruth) {
-    const FRAMES: usize = 40;
-    let gpu = gpu();
+fn open(gpu: &engine::Gpu, (scene, scale, path): (&str, f64, &str), speed: f64) -> Session {
     let (scene, path) = (scene.into(), Some(path.into()));
-    let size = [320, 180];
-    let run = SessionOptions { scene, path, scale, speed, frames: FRAMES, size, ..SessionOptions::default() };
-    let mut session = Session::on(&gpu, run).unwrap();
-    let truth = RunTruth::draw(&mut session, || ()).unwrap();
+    let run = SessionOptions { scene, path, scale, speed, frames: 40, size: [320, 180], ..SessionOptions::default() };
+    Session::on(gpu, run).unwrap()
+}
+
+/// The method chosen in each frame, and the objects drawn, when `woc` is said to take a quarter of the time of others.
+fn film_where_woc_is_cheap(session: &mut Session, allow: &str) -> (Vec<String>, Vec<Drawn>) {
     let entry = culling::find("auto").unwrap();
     let mut options = entry.default_options();
     options.set("allow-error", allow).unwrap();
-    let mut auto = Contender::new(&session, entry, options, &None).unwrap();
+    let mut auto = Contender::new(session, entry, options, &None).unwrap();
     let (mut chosen, mut drawn) = (Vec::new(), Vec::new());
-    for frame in 0..FRAMES {
+    for frame in 0..session.frames() {
         // Staged frames are not measured: the times are made up.
-        let report = auto.staged(&mut session, frame).unwrap();
-        drawn.push(drawn_objects(&gpu, &session.world, &report).unwrap());
+        let report = auto.staged(session, frame).unwrap();
+        drawn.push(drawn_objects(&session.gpu, &session.world, &report).unwrap());
         let choice = auto.method.choices().last().unwrap().clone();
         let id = choice.split([':', ',']).nth(1).unwrap().trim().to_owned();
         auto.method.measured(if id == "woc" { 5.0 } else { 20.0 });
         chosen.push(id);
     }
-    (chosen, drawn, truth)
+    (chosen, drawn)
 }
 
 #[test]
 fn errors_are_made_only_where_they_are_allowed_and_checked_frames_make_none() {
-    let (exact, ..) = film_where_woc_is_cheap(CALM, 1.0, "0");
+    let gpu = gpu();
+    let mut session = open(&gpu, CALM, 1.0);
+    let (exact, _) = film_where_woc_is_cheap(&mut session, "0");
     assert!(exact.iter().all(|id| id != "woc"), "{exact:?}");
-    let (chosen, drawn, truth) = film_where_woc_is_cheap(CALM, 1.0, "10");
+    let (chosen, drawn) = film_where_woc_is_cheap(&mut session, "10");
+    let truth = RunTruth::draw(&mut session, || ()).unwrap();
     assert!(chosen[20..].iter().all(|id| id == "woc"), "{chosen:?}");
     let began = chosen.iter().position(|id| id == "woc").unwrap();
     for (frame, drawn) in drawn.iter().enumerate() {
@@ -103,9 +101,10 @@ fn errors_are_made_only_where_they_are_allowed_and_checked_frames_make_none() {
 /// Where all moves quickly, `woc` errs by a tenth of a percent and more: a check that finds that ends it, where less is allowed.
 #[test]
 fn who_errs_more_than_is_allowed_is_not_used_any_more() {
-    let balloons = ("moving-balloons", 0.3, "still");
-    let used = |allow| {
-        let (chosen, ..) = film_where_woc_is_cheap(balloons, 32.0, allow);
+    let gpu = gpu();
+    let mut balloons = open(&gpu, ("moving-balloons", 0.3, "still"), 32.0);
+    let mut used = |allow| {
+        let (chosen, _) = film_where_woc_is_cheap(&mut balloons, allow);
         (chosen.iter().filter(|id| *id == "woc").count(), chosen)
     };
     let (allowed, chosen) = used("1");
