@@ -11,6 +11,7 @@ mod table;
 
 use count::Counter;
 use culling::{Entry, METHODS, PARTICULAR};
+use engine::Gpu;
 use harness::{assert_caught, assert_none, golden, gpu};
 use std::collections::BTreeSet;
 use table::{More, Row, NO_WORK, ROWS};
@@ -88,10 +89,8 @@ fn every_option_of_every_method_has_a_row_or_a_reason() {
 }
 
 /// Work of every method with its defaults, summed over the frames of a run; counts that are 0 are left out.
-#[test]
-fn the_work_of_every_method_is_as_recorded() {
-    let gpu = gpu();
-    let mut counter = Counter::new(&gpu);
+fn record(gpu: &Gpu) -> String {
+    let mut counter = Counter::new(gpu);
     let mut text = String::from("Work of each method with its defaults, summed over 8 frames (tests/tests/work.rs).\n");
     let all = entries().map(|entry| (entry, table::recorded_run(entry.id)));
     let moving = METHODS.iter().map(|entry| (entry, table::MOVING));
@@ -100,5 +99,17 @@ fn the_work_of_every_method_is_as_recorded() {
         let counts = counter.count(entry, table::recorded_settings(entry.id), run);
         text.push_str(&format!("{} in {} ({}):{}\n", entry.id, run.0, run.2, counts.line()));
     }
-    golden::compare("work", &text);
+    text
+}
+
+/// The record is lavapipe's: devices round depths in other ways, and then count otherwise. Elsewhere two runs must do the same work.
+#[test]
+fn the_work_of_every_method_is_as_recorded() {
+    let gpu = gpu();
+    let text = record(&gpu);
+    if gpu.info().is_some_and(|info| info.name.contains("llvmpipe")) {
+        golden::compare("work", &text);
+    } else {
+        assert_eq!(text, record(&gpu));
+    }
 }

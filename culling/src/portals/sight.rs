@@ -223,3 +223,83 @@ fn cut_at_near(corners: &[DVec4]) -> Vec<DVec4> {
     }
     cut
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+    use scenes::{Cell, Pose, Projection, Shot};
+
+    /// An opening 2 m wide and high at a depth before the first eye's plane, with its middle at `x`.
+    fn opening(cells: [Option<u32>; 2], x: f64, z: f64) -> Portal {
+        let corner = |dx: f64, dy: f64| DVec3::new(x + dx, dy, z);
+        Portal { cells, corners: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)] }
+    }
+
+    /// Three rooms in a row, 10 m deep each. The opening into the third has its middle at `x`.
+    fn rooms(x: f64) -> Cells {
+        let cell = |number: i32| {
+            let far = -10.0 * f64::from(number + 1);
+            let bounds = Aabb { min: DVec3::new(-5.0, -5.0, far), max: DVec3::new(5.0, 5.0, far + 10.0) };
+            Cell { name: format!("room {number}"), bounds }
+        };
+        let portals = vec![opening([Some(0), Some(1)], 0.0, -10.0), opening([Some(1), Some(2)], x, -20.0)];
+        Cells { half_wall: 0.05, reach: 0.1, cells: (0..3).map(cell).collect(), portals }
+    }
+
+    /// In the first room, 8 m before its opening, looking at it or to the other side.
+    fn look(towards: f64) -> View {
+        let pose = Pose {
+            position: DVec3::new(0.0, 0.0, -2.0),
+            rotation: DQuat::from_rotation_y(if towards < 0.0 { 0.0 } else { std::f64::consts::PI }),
+        };
+        let projection = Projection::Perspective { fov_y: 1.2, near: 0.1, far: Some(100.0) };
+        View::new(&Shot { pose, projection, seconds: 0.0 }, [200, 200], 0, 0.0)
+    }
+
+    fn seen(cells: &Cells, view: &View) -> Vec<Option<Rectangle>> {
+        let Start::In(from) = start(cells, view) else { panic!("the eye is in a room") };
+        assert_eq!(from, [0]);
+        let mut sight = Sight::new(cells, view);
+        sight.look(&from);
+        sight.pictures
+    }
+
+    #[test]
+    fn portals_one_behind_the_other_show_three_rooms_and_portals_set_apart_show_two() {
+        let view = look(-1.0);
+        let count = |x: f64| seen(&rooms(x), &view).iter().flatten().count();
+        // Through the first opening the eye sees 18/8 = 2.25 m to each side in the plane of the second, whose near edge is at x - 1.
+        assert_eq!([0.0, 2.0, 3.0, 3.6, 4.0].map(count), [3, 3, 3, 2, 2]);
+        assert_eq!([-3.0, -3.6].map(count), [3, 2]);
+        assert_eq!(seen(&rooms(0.0), &look(1.0)).iter().flatten().count(), 1, "it looks away");
+    }
+
+    #[test]
+    fn each_portal_narrows_the_picture_of_what_lies_beyond() {
+        let view = look(-1.0);
+        let pictures = seen(&rooms(2.0), &view);
+        let [first, second, third] = [0, 1, 2].map(|cell| pictures[cell].unwrap());
+        assert_eq!(first, Rectangle::whole(&view));
+        // A metre at a distance d lies 1 / (d tan 0.6) from the middle of the picture; pixels are 0.01 wide, and each side is a pixel wider.
+        let at = |metres: f64, distance: f64| metres / (distance * 0.6f64.tan());
+        let near = |one: f64, other: f64| (one - other).abs() < 1e-9;
+        assert!(near(second.max.x, at(1.0, 8.0) + 0.01) && near(second.min.y, -at(1.0, 8.0) - 0.01), "{second:?}");
+        assert!(near(third.min.x, at(1.0, 18.0) - 0.01) && near(third.max.x, second.max.x), "{third:?}");
+        assert!(near(third.max.y, at(1.0, 18.0) + 0.01), "{third:?}");
+    }
+
+    /// The cut of a portal at the near plane keeps what lies beyond it.
+    #[test]
+    fn a_portal_across_the_near_plane_is_cut_there() {
+        let corner = |x: f64, z: f64| DVec4::new(x, 0.0, z, 1.0);
+        assert_eq!(cut_at_near(&[corner(0.0, 0.5), corner(1.0, 0.5), corner(1.0, 0.0)]).len(), 3, "all beyond");
+        assert!(cut_at_near(&[corner(0.0, 1.5), corner(1.0, 1.5), corner(1.0, 2.0)]).is_empty(), "all before");
+        let cut = cut_at_near(&[corner(0.0, 0.5), corner(4.0, 0.5), corner(4.0, 1.5)]);
+        assert_eq!(cut.len(), 4);
+        // The plane is taken a rounding nearer: 1e-12 of w and of z, both about 1 here.
+        let is_at_the_plane = |corner: &&DVec4| (corner.z - 1.0).abs() < 1e-11;
+        let ends: Vec<f64> = cut.iter().filter(is_at_the_plane).map(|corner| corner.x).collect();
+        assert!(ends.len() == 2 && (ends[0] - 2.0).abs() < 1e-10 && ends[1] == 4.0, "{cut:?}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Counts what a method does over the frames of a short run.
 
-use culling::{drawn_objects, Entry, VisibleSets};
+use culling::{draw_lists, drawn_objects, Entry, VisibleSets};
 use engine::Gpu;
 use harness::sessions;
 use sightline::run::session::Session;
@@ -13,10 +13,13 @@ use std::sync::Arc;
 /// Frames of each run.
 const FRAMES: usize = 8;
 
+/// Draw lists of a frame whose objects are counted apart.
+const PASSES: usize = 3;
+
 /// Scene, scale and path of a run, as in [`sessions::RUNS`].
 pub type Run = (&'static str, f64, &'static str);
 
-/// Sums over the frames of a run, by name: the fields of [`culling::Work`], drawn objects and triangles, submissions, uploads,
+/// Sums over the frames of a run, by name: the fields of [`culling::Work`], drawn objects and triangles, objects of each of the first draw lists, submissions, uploads,
 /// stages, and of each stage the number of times that it ran.
 #[derive(Clone, Default)]
 pub struct Counts(BTreeMap<String, u64>);
@@ -109,6 +112,10 @@ fn counts_of(
             ("stages", report.stages.len() as u64),
         ] {
             counts.add(name, count);
+        }
+        for (pass, list) in draw_lists(&session.gpu, &report).unwrap().iter().enumerate().take(PASSES) {
+            let drawn = list.iter().filter(|command| command.instance_count > 0).count();
+            counts.add(&format!("pass_{}", pass + 1), drawn as u64);
         }
         for stage in &report.stages {
             counts.add(stage.label.split(':').next().unwrap_or_default(), 1);
