@@ -15,17 +15,17 @@ readonly RESULTS=target/mutants
 
 # ROOM | files | packages whose tests run | arguments of `cargo test`. Tests of stages hold the CPU references, and laws hold the rest.
 readonly ROOMS='
-hzb|culling/src/hzb/**/*.rs|sightline-culling,sightline-tests|--lib --test work --test method_hzb --test method_hzb_iterative
+hzb|culling/src/hzb/**|sightline-culling,sightline-tests|--lib --test work --test method_hzb --test method_hzb_iterative
 eovc|culling/src/eovc/*.rs|sightline-culling,sightline-tests|--lib --test work --test method_eovc
 queries|culling/src/queries/*.rs|sightline-culling,sightline-tests|--lib --test work --test method_query_wait --test method_query_lag --test method_chc --test method_chcpp --test method_nohc
-auto|culling/src/auto/**/*.rs|sightline-culling,sightline-tests|--lib --test work --test method_auto
+auto|culling/src/auto/**|sightline-culling,sightline-tests|--lib --test work --test method_auto
 barriers|engine/src/barriers.rs|sightline-engine,sightline-tests|--lib --test engine
 lower|engine/src/lower{.rs,/*.rs}|sightline-engine,sightline-tests|--lib --test engine
 timers|engine/src/timers.rs|sightline-engine,sightline-tests|--lib --test engine
-measures|tools/src/measures/**/*.rs|sightline|--lib --tests
-results|tools/src/results/**/*.rs|sightline|--lib --tests
-run|tools/src/run/**/*.rs|sightline|--lib --tests
-stress|tools/src/stress/**/*.rs|sightline,sightline-tests|--lib --test stress --test stress_finds --test stress_catalogue
+measures|tools/src/measures/**|sightline|--lib --tests
+results|tools/src/results/**|sightline|--lib --tests
+run|tools/src/run/**|sightline|--lib --tests
+stress|tools/src/stress/**|sightline,sightline-tests|--lib --test stress --test stress_finds --test stress_catalogue
 '
 
 lines_of() {
@@ -47,7 +47,7 @@ score() {
 }
 
 mutate() {
-    local room=$1 line files packages arguments status=0
+    local room=$1 line files packages arguments argument status=0 flags=()
     line=$(grep "^$room|" <<<"$ROOMS") || {
         echo "mutate: no room is named '$room'; there are: $(cut -d'|' -f1 <<<"$ROOMS" | xargs)" >&2
         return 2
@@ -56,10 +56,11 @@ mutate() {
     mkdir -p "$RESULTS/$room"
     # The CPU references (twin.rs) and tests are what others are held to, so they are left as they are. The copy that is mutated takes this
     # folder's build with it. Exit codes 2 and 3 say that mutants were missed or did not end, which is no failure of this script.
-    # shellcheck disable=SC2086
+    # What follows `--` counts when tests run, and not when they are built: `--cargo-arg` keeps other test files from being built.
+    for argument in $arguments; do flags+=("--cargo-arg=$argument"); done
     cargo mutants --workspace --file "$files" --exclude '**/tests.rs' --exclude '**/tests/**' --exclude '**/twin.rs' \
         --shard "$SHARE" --sharding round-robin --iterate --copy-target true --timeout 300 --baseline skip \
-        --output "$RESULTS/$room" --test-package "$packages" -- $arguments || status=$?
+        --output "$RESULTS/$room" --test-package "$packages" "${flags[@]}" || status=$?
     ((status == 0 || status == 2 || status == 3)) || return "$status"
 }
 
