@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_frame_is_hurried_from_an_eighth_on_and_a_cut_where_most_is_new() {
+    fn a_frame_is_hurried_above_twelve_percent_and_a_cut_above_sixty() {
         let paces = [0.0, 0.119, 0.121, 0.3, 0.599, 0.601, 1.0].map(pace_of);
         let expected = [Pace::Calm, Pace::Calm, Pace::Hurried, Pace::Hurried, Pace::Hurried, Pace::Cut, Pace::Cut];
         assert_eq!(paces, expected);

@@ -58,6 +58,14 @@ impl Shading {
             Shading::Lambert
         }
     }
+
+    /// Its name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Shading::Lambert => "lambert",
+            Shading::Textured => "textured",
+        }
+    }
 }
 
 /// Objects that lie side by side and are drawn in the same way.

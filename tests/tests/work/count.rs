@@ -1,6 +1,6 @@
 //! Counts what a method does over the frames of a short run.
 
-use culling::{draw_lists, drawn_objects, Entry, VisibleSets};
+use culling::{draw_lists, drawn_by, Entry, VisibleSets};
 use engine::Gpu;
 use harness::sessions;
 use sightline::run::session::Session;
@@ -94,7 +94,8 @@ fn counts_of(
         let view = session.look(frame).unwrap();
         let report = contender.run(session, &view, Watched::Stages).unwrap();
         let work = contender.method.work().unwrap();
-        let drawn = drawn_objects(&session.gpu, &session.world, &report).unwrap();
+        let lists = draw_lists(&session.gpu, &report).unwrap();
+        let drawn = drawn_by(&session.world, &report, &lists);
         for (name, count) in [
             ("queries", work.queries),
             ("plane_tests", work.plane_tests),
@@ -113,7 +114,7 @@ fn counts_of(
         ] {
             counts.add(name, count);
         }
-        for (pass, list) in draw_lists(&session.gpu, &report).unwrap().iter().enumerate().take(PASSES) {
+        for (pass, list) in lists.iter().enumerate().take(PASSES) {
             let drawn = list.iter().filter(|command| command.instance_count > 0).count();
             counts.add(&format!("pass_{}", pass + 1), drawn as u64);
         }

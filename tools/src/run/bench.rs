@@ -334,7 +334,7 @@ pub fn header(session: &Session, command: &str) -> Results {
             triangles: session.world.triangles(),
             hash: session.scene_hash(),
             moving_bounds: session.moving_bounds().map_or_else(String::new, |mode| mode.name().to_owned()),
-            shading: format!("{:?}", session.shading()).to_lowercase(),
+            shading: session.shading().name().to_owned(),
         },
         path: session.path().describe(),
         speed: given.speed,

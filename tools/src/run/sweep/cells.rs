@@ -4,7 +4,7 @@ use crate::results::Results;
 use crate::run::bench::{bench, header, BenchOptions};
 use crate::run::session::Session;
 use anyhow::{Context, Result};
-use culling::{Entry, Options, Shading};
+use culling::{Entry, Options};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -141,14 +141,14 @@ fn set_ratios(cell: &mut Results) {
 
 /// Everything on which a cell's numbers depend. Nothing that is measured at start, as that could differ the next time.
 fn key(session: &Session, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
-    key_of(&header(session, ""), session.shading(), plan, cell)
+    key_of(&header(session, ""), plan, cell)
 }
 
 /// The key of a cell of a run with this header.
-fn key_of(header: &Results, shading: Shading, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
+fn key_of(header: &Results, plan: &SweepPlan, cell: &[Setting]) -> Result<String> {
     let what = serde_json::to_string(header)?;
     let labels: Vec<String> = cell.iter().map(|(_, options)| options.label()).collect();
-    let text = format!("{what}\n{}\n{}\n{}\n{shading:?}", labels.join("\n"), plan.warmup, plan.metrics);
+    let text = format!("{what}\n{}\n{}\n{}", labels.join("\n"), plan.warmup, plan.metrics);
     let digest = Sha256::digest(text.as_bytes());
     Ok(digest.iter().take(12).map(|byte| format!("{byte:02x}")).collect())
 }
